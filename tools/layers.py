@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+"""Checks the order of the layers and that every third-party library is included by one source file. Fatal on a breach.
+
+A file may include headers of its own layer or a lower one. Layers, lowest first: see `layer_of`. Prints one line a breach.
+"""
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+# Our own stages that stand below the pass and above their library wrappers are one layer; the pass, the device and the
+# command line follow.
+PASS = {"pass", "memo"}
+VALIDATION = {"validate", "workers", "device"}
+
+# Third-party header prefix -> the files that may include it.
+THIRD_PARTY = {
+    "xxhash": {"compiler/base/xxh3.cpp"},
+    "openssl/": {"compiler/base/sha256.cpp"},
+    "gmp": {"compiler/count.cpp"},
+    "yaml-cpp/": {"compiler/yaml.cpp"},
+    "glslang/": {"compiler/glsl.cpp"},
+    "spirv-tools/": {"compiler/spirv.cpp"},
+    "spirv_cross/": {"compiler/cross.cpp"},
+    "lz4": {"compiler/lz4.cpp"},
+    "png": {"compiler/device/png.cpp"},
+    "mimalloc": {"tools/allocator.cpp"},
+}
+C_LIBRARY = {"fcntl.h", "unistd.h", "poll.h", "signal.h", "dirent.h", "dlfcn.h", "sched.h", "time.h", "termios.h", "glob.h", "stdint.h",
+             "stddef.h", "string.h", "stdbool.h", "pthread.h", "spawn.h", "limits.h", "errno.h", "utime.h"}
+
+
+def layer_of(path):
+    parts = path.parts
+    stem = pathlib.Path(parts[-1]).stem
+    if parts[0] == "tests":
+        return 6
+    if parts[0] == "tools":
+        return 5
+    if parts[0] == "cache":
+        return 1
+    if parts[0] != "compiler":
+        return None
+    if parts[1] in ("base", "runtime"):
+        return 0
+    if parts[1] == "device" or stem in VALIDATION:
+        return 4
+    if stem in PASS:
+        return 3
+    return 2
+
+
+def check(path, breaches):
+    relative = path.relative_to(ROOT)
+    layer = layer_of(relative)
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        match = INCLUDE.match(line)
+        if not match:
+            continue
+        bracket, header = match.groups()
+        where = f"{relative}:{number}"
+        if bracket == '"':
+            target = pathlib.Path(header)
+            if not (ROOT / target).exists() and not (path.parent / target).exists():
+                continue
+            if not (ROOT / target).exists():
+                target = (path.parent / target).resolve().relative_to(ROOT)
+            below = layer_of(target)
+            if layer is None or below is None:
+                continue
+            if below > layer:
+                breaches.append(f"{where}: layer {layer} includes {header} of layer {below}")
+            if relative.parts[0] == "cache" and target.parts[0] == "compiler" and target.parts[1] != "base":
+                breaches.append(f"{where}: cache/ may use compiler/base only, not {header}")
+            if relative.parts[0] == "compiler" and target.parts[0] == "cache":
+                breaches.append(f"{where}: compiler/ must not know cache/")
+            if relative.parts[:2] == ("compiler", "runtime") and target.parts[:2] != ("compiler", "runtime"):
+                breaches.append(f"{where}: compiler/runtime depends on nothing but the standard library")
+            continue
+        if layer in (5, 6) and relative.parts[0] == "tests":
+            continue
+        if header.startswith("vulkan/"):
+            if relative.parts[:2] != ("compiler", "device"):
+                breaches.append(f"{where}: vulkan.h belongs to compiler/device")
+            continue
+        for prefix, owners in THIRD_PARTY.items():
+            if header.startswith(prefix):
+                if str(relative) not in owners:
+                    breaches.append(f"{where}: <{header}> may be included by {', '.join(sorted(owners))} only")
+                break
+        else:
+            if relative.parts[:2] == ("compiler", "runtime") and ("/" in header):
+                breaches.append(f"{where}: compiler/runtime includes <{header}>")
+            elif "/" in header and not header.startswith("sys/"):
+                if relative.parts[0] == "tools" and header.startswith("benchmark/"):
+                    continue
+                breaches.append(f"{where}: third-party header <{header}> has no owner in tools/layers.py")
+
+
+def main():
+    breaches = []
+    for folder in ("compiler", "cache", "tools", "tests"):
+        for path in sorted((ROOT / folder).rglob("*")):
+            if path.suffix in (".h", ".hpp", ".cpp", ".c"):
+                check(path, breaches)
+    for entry in sorted(ROOT.iterdir()):
+        allowed = {"CMakeLists.txt", "CMakePresets.json", "README.md", "ARCHITECTURE.md", "LICENSE", "CONTRIBUTING.md", "CHANGELOG.md",
+                   "SECURITY.md", "compiler", "uber", "manifests", "cache", "tests", "tools", "build", "demo-out"}
+        if not entry.name.startswith(".") and entry.name not in allowed and not entry.name.startswith("build-"):
+            breaches.append(f"{entry.name}: not a top-level entry of the layout")
+    for breach in breaches:
+        print(breach)
+    if not breaches:
+        print("layers: ok")
+    return 1 if breaches else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Installs every Debian 12 package that building, testing and demonstrating kiln needs. Idempotent; works as root or with sudo.
+# With --bench it adds the tools that bench_peers.sh measures against.
+set -euo pipefail
+
+packages=(
+  # building
+  build-essential cmake ninja-build ccache pkg-config
+  glslang-dev spirv-tools spirv-headers libspirv-cross-c-shared-dev
+  libyaml-cpp-dev libxxhash-dev libgmp-dev libssl-dev liblz4-dev libpng-dev libmimalloc-dev
+  # running variants
+  libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
+  # tests and checks
+  libgtest-dev libgmock-dev libbenchmark-dev glslang-tools glslc spirv-cross clang clang-format clang-tidy libclang-rt-14-dev
+  python3 python3-yaml python3-jsonschema git make
+)
+bench=(qt6-shader-baker)
+for argument in "$@"; do
+  case "$argument" in
+    --bench) packages+=("${bench[@]}") ;;
+    --help) echo "usage: tools/setup.sh [--bench]"; exit 0 ;;
+    *) echo "setup.sh: unknown argument '$argument'" >&2; exit 2 ;;
+  esac
+done
+
+missing=()
+for package in "${packages[@]}"; do
+  state=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
+  [ "$state" = installed ] || missing+=("$package")
+done
+if [ ${#missing[@]} -eq 0 ]; then
+  echo "setup: all ${#packages[@]} packages are installed"
+  exit 0
+fi
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "setup.sh: not root and no sudo; install: ${missing[*]}" >&2; exit 3; }
+  as_root=(sudo)
+fi
+echo "setup: installing ${missing[*]}"
+export DEBIAN_FRONTEND=noninteractive
+for attempt in 1 2 3; do
+  if "${as_root[@]}" apt-get update -q && "${as_root[@]}" apt-get install -y -q --no-install-recommends "${missing[@]}"; then
+    exit 0
+  fi
+  echo "setup: attempt $attempt failed" >&2
+  sleep $((attempt * 5))
+done
+echo "setup.sh: could not install ${missing[*]}" >&2
+exit 3

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds kiln and passes its tests. --full adds the long suites: the sanitizer builds, fuzzing from
+# the seed corpora, clang-format and clang-tidy.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+full=no
+for argument in "$@"; do
+  case "$argument" in
+    --full) full=yes ;;
+    --help) echo "usage: tools/test.sh [--full]"; exit 0 ;;
+    *) echo "test.sh: unknown argument '$argument'" >&2; exit 2 ;;
+  esac
+done
+
+tools/setup.sh
+export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
+python3 tools/layers.py
+
+build() { cmake --preset "$1" >"build-$1.log" 2>&1 || { cat "build-$1.log"; exit 1; }; rm -f "build-$1.log"; cmake --build --preset "$1"; }
+
+if [ "$full" = yes ]; then
+  git ls-files '*.cpp' '*.h' '*.hpp' | xargs clang-format --dry-run --Werror
+  build tsan
+  ctest --preset tsan -L 'unit' -LE device -j "$(nproc)"
+  build fuzz
+  tools/fuzz.sh build/fuzz 60
+fi
+
+# The sanitizer build runs the unit tests and the fuzz corpora; device tests run without it, since the driver's JIT is not
+# instrumented.
+build asan
+ctest --preset asan -L 'unit|fuzz' -j "$(nproc)"
+
+build dev
+if [ "$full" = yes ]; then
+  git ls-files 'compiler/*.cpp' 'cache/*.cpp' 'tools/*.cpp' | xargs -P "$(nproc)" -n 4 clang-tidy -p build/dev --quiet
+fi
+ctest --preset dev -j "$(nproc)"
