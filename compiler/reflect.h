@@ -60,11 +60,12 @@ struct ValueType {
 };
 
 struct Member {
-    std::string name;  // nested structures are flattened: "lights[0].position" has name "lights[].position"
-    ValueType type;
-    uint32_t offset = 0;        // bytes from the start of the block
-    uint32_t size = 0;          // bytes; 0 for a run-time array
-    uint32_t array_stride = 0;  // of the innermost enclosing array, 0 when none
+    std::string name;               // nested structures are flattened: "lights[0].position" has name "lights[].position"
+    ValueType type;                 // its array dimensions include those of every enclosing array: lights[4] of w[3] is {4, 3}
+    uint32_t offset = 0;            // bytes from the start of the block
+    uint32_t size = 0;              // bytes; 0 for a run-time array
+    uint32_t array_stride = 0;      // of the innermost enclosing array, 0 when none
+    std::vector<uint32_t> strides;  // bytes, one per dimension of type.array, outermost first
     uint32_t matrix_stride = 0;
     bool row_major = false;
     friend bool operator==(const Member&, const Member&) = default;
