@@ -150,6 +150,14 @@ std::string join_path(std::string_view folder, std::string_view relative) {
     return normal_path(std::string(folder) + "/" + std::string(relative));
 }
 
+std::string relative_path(std::string_view folder, std::string_view path) {
+    if (path.empty()) return {};
+    const std::filesystem::path whole = normal_path(path);
+    const std::filesystem::path base = normal_path(folder.empty() ? "." : folder);
+    const std::string relative = whole.lexically_relative(base).generic_string();
+    return relative.empty() ? whole.generic_string() : relative;
+}
+
 std::string folder_of(std::string_view path) {
     const size_t slash = path.rfind('/');
     if (slash == std::string_view::npos) return {};

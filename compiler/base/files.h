@@ -48,6 +48,8 @@ public:
 // A path with "." and inner ".." removed, "/" as separator. Leading ".." stay.
 std::string normal_path(std::string_view path);
 std::string join_path(std::string_view folder, std::string_view relative);  // normalised; `relative` wins when absolute
-std::string folder_of(std::string_view path);                               // "" for a bare name
+// `path` as seen from `folder`, so that join_path(folder, result) is `path` again; absolute ones outside stay absolute.
+std::string relative_path(std::string_view folder, std::string_view path);
+std::string folder_of(std::string_view path);  // "" for a bare name
 
 }  // namespace kiln

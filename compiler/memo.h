@@ -1,0 +1,34 @@
+#pragma once
+// What a build remembers of its inputs, in two steps as ccache's direct mode: what was asked (K1) names the list of files that
+// were read and probed last time; if all of that still holds, asked + list (K2) names the result (DESIGN section 5).
+
+#include <optional>
+#include <vector>
+
+#include "compiler/base/files.h"
+#include "compiler/base/store.h"
+#include "compiler/base/wire.h"
+#include "compiler/split.h"
+
+namespace kiln {
+
+// Records name files relative to `folder` (the manifest's), so that two checkouts that share a store never answer for each
+// other's files; paths given and returned are as opened.
+
+// The result remembered for `asked`, when every file on its list still has its digest or is still absent. `reads` receives the
+// list.
+std::optional<Bytes> recall(Store& store, Files& files, const std::string& folder, const Digest& asked,
+                            std::vector<SourceRead>& reads);
+
+// Remembers `result` under `asked` and the files it depended on. Store failures are returned, not reported.
+Status remember(Store& store, const std::string& folder, const Digest& asked, const std::vector<SourceRead>& reads,
+                ByteView result);
+
+void write_diags(WireWriter& out, const Diags& diags, const std::string& folder);
+bool read_diags(WireReader& in, Diags& diags, const std::string& folder);
+
+// One stage's classes as bytes. `space` gives and checks the diagram.
+void write_split(WireWriter& out, const Split& split, const Space& space, const std::string& folder);
+bool read_split(WireReader& in, Split& split, Space& space, const std::string& folder);
+
+}  // namespace kiln
