@@ -1,0 +1,43 @@
+#ifndef KILN_SHADOW_MAP_GLSL
+#define KILN_SHADOW_MAP_GLSL
+// Hard shadows from a depth map. Map and look-up use the same Vulkan matrix: z / w is depth in [0, 1] as it stands and
+// uv = ndc.xy / 2 + 1/2 with no flip. Samplers compare with LESS_OR_EQUAL: 1 where the receiver is not behind what
+// the map holds. Williams, "Casting Curved Shadows on Curved Surfaces", 1978; Reeves et al. 1987 for comparing before
+// filtering.
+#include "math.glsl"
+
+// A receiver moved off its surface so far that the map's texels cannot shadow it. Inside one texel (bilinear comparison:
+// one to each side, sqrt(2) texels on the diagonal) the plane's depth differs by sqrt(2) s tan(a); moving by o along the
+// normal clears o / cos(a); hence o = sqrt(2) s sin(a).
+// position: world; n: unit; n_dot_l: cosine of a; texel: metres, side s of a texel here.
+vec3 offset_shadow_receiver(vec3 position, vec3 n, float n_dot_l, float texel) {
+    return position + n * (1.41421356 * texel * sqrt(saturate(1.0 - n_dot_l * n_dot_l)));
+}
+
+// 1 lit, 0 in shadow. A receiver behind the light's plane (w <= 0) or outside the map (uv or depth not in [0, 1]) is lit:
+// the map knows nothing of it. Reads the only level, so that it may stand in divergent code.
+// clip: the receiver in the light's clip space; bias: depth units, >= 0, at least two quanta of the map.
+float shadow_factor_2d(sampler2DShadow map, vec4 clip, float bias) {
+    const bool in_front = clip.w > 0.0;
+    const vec3 ndc = clip.xyz / (in_front ? clip.w : 1.0);
+    const vec2 uv = ndc.xy * 0.5 + 0.5;
+    const bool inside = in_front && all(greaterThanEqual(vec3(uv, ndc.z), vec3(0.0))) &&
+                        all(lessThanEqual(vec3(uv, ndc.z), vec3(1.0)));
+    const float lit = textureLod(map, vec3(uv, ndc.z - bias), 0.0);
+    return inside ? lit : 1.0;
+}
+
+// The same from a point light's cube map, whose faces are six 90-degree perspectives from near to far: a face's view
+// distance is the largest component of the direction, its depth far / (far - near) - far near / ((far - near) z).
+// Call in uniform control flow: a cube comparison has no explicit level in all target languages.
+// from_light: receiver minus light, world metres; near, far: metres, 0 < near < far; bias as above.
+float shadow_factor_cube(samplerCubeShadow map, vec3 from_light, float near, float far, float bias) {
+    const vec3 a = abs(from_light);
+    const float z = max(max(a.x, a.y), a.z);
+    const float scale = far / max(far - near, 1e-6);
+    const float depth = scale - scale * near / max(z, 1e-6);
+    const float lit = texture(map, vec4(from_light, depth - bias));
+    return z >= near && z <= far ? lit : 1.0;
+}
+
+#endif

@@ -1,0 +1,33 @@
+#ifndef KILN_VECTORS_GLSL
+#define KILN_VECTORS_GLSL
+// Directions and normals.
+
+// v scaled to unit length, or `fallback` when v is zero. Dividing by the largest component first keeps dot(v, v) from
+// overflowing or vanishing for any finite v. fallback: unit vector.
+vec3 safe_normalize(vec3 v, vec3 fallback) {
+    const float largest = max(max(abs(v.x), abs(v.y)), abs(v.z));
+    if (!(largest > 0.0)) {
+        return fallback;
+    }
+    const vec3 scaled = v / largest;
+    return scaled * inversesqrt(dot(scaled, scaled));
+}
+
+// A normal through an affine map, not normalised: the inverse transpose up to a positive factor. Made from the cofactors,
+// so that a singular `m` (a scale of 0 along one axis) divides by nothing; times the determinant's sign, so that a
+// mirrored object keeps its outside. m: the upper 3 x 3 of object to world; n: object space.
+vec3 transform_normal(mat3 m, vec3 n) {
+    const vec3 c0 = cross(m[1], m[2]);
+    const vec3 transformed = mat3(c0, cross(m[2], m[0]), cross(m[0], m[1])) * n;
+    return dot(m[0], c0) < 0.0 ? -transformed : transformed;
+}
+
+// A unit vector folded onto the octahedron and unfolded into the square [-1, 1]^2.
+// Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 3(2), 2014.
+vec2 encode_octahedral(vec3 n) {
+    const vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    const vec2 folded = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
+    return n.z >= 0.0 ? p : folded;
+}
+
+#endif
