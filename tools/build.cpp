@@ -1,0 +1,122 @@
+// kiln build: the whole pass, and its files published together at the end.
+#include <sys/resource.h>
+
+#include <cstdio>
+
+#include "tools/console.h"
+#include "tools/json.h"
+#include "tools/session.h"
+#include "tools/verbs.h"
+
+namespace kiln {
+
+namespace {
+
+double peak_mebibytes() {
+    struct rusage usage {};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+std::string as_json(const Build& build) {
+    Json json;
+    json.object().key("counts").object();
+    json.text("declared", build.counts.declared.decimal()).text("legal", build.counts.legal.decimal());
+    json.text("needed", build.counts.needed.decimal()).text("classes", std::to_string(build.counts.classes));
+    json.text("raw", std::to_string(build.counts.raw)).text("pruned", std::to_string(build.counts.pruned));
+    json.text("modules", std::to_string(build.counts.modules)).text("pipelines", std::to_string(build.counts.pipelines));
+    json.key("artifacts").object();
+    for (const auto& [target, n] : build.counts.artifacts) json.text(name_of(target), std::to_string(n));
+    json.end().end().key("work").object();
+    json.number("preprocessed", build.work.preprocessed).number("compiled", build.work.compiled);
+    json.number("optimised", build.work.optimised).number("translated", build.work.translated);
+    json.number("cache_hits", build.work.cache_hits).end().key("bytes").object();
+    json.number("table", uint64_t{build.files.table.size()}).number("proof", uint64_t{build.files.proof.size()});
+    json.number("peak_memory", static_cast<uint64_t>(peak_mebibytes() * 1048576.0)).end().key("ms").object();
+    for (const auto& [step, ms] : build.ms) json.number(step, ms);
+    json.end().end();
+    return json.take();
+}
+
+std::string as_text(const Build& build, const std::string& output) {
+    const auto n = [](uint64_t v) { return Count(v).grouped(); };
+    std::string out = output + ": " + build.counts.needed.grouped() + " variants (" + build.counts.declared.grouped() +
+                      " declared, " + build.counts.legal.grouped() + " legal)\n";
+    out += "  " + n(build.counts.classes) + " classes -> " + n(build.counts.raw) + " raw -> " + n(build.counts.pruned) +
+           " pruned -> " + n(build.counts.modules) + " modules, " + n(build.counts.pipelines) + " pipelines\n ";
+    for (const auto& [target, count] : build.counts.artifacts) out += std::string(" ") + name_of(target) + " " + n(count);
+    out += "\n  compiled " + n(build.work.compiled) + ", optimised " + n(build.work.optimised) + ", translated " +
+           n(build.work.translated) + ", cache hits " + n(build.work.cache_hits) + "\n";
+    out += "  " + n(build.files.table.size()) + " bytes, proof " + n(build.files.proof.size()) + " bytes\n";
+    return out;
+}
+
+// Spaces and the few other characters that mean something to make and Ninja are escaped.
+std::string escaped(const std::string& path) {
+    std::string out;
+    for (const char c : path) {
+        if (c == ' ' || c == '#' || c == '\\') out += '\\';
+        if (c == '$') out += '$';
+        out += c;
+    }
+    return out;
+}
+
+std::string depfile(const std::string& output, const std::vector<std::string>& depends) {
+    std::string out = escaped(output) + ":";
+    for (const std::string& path : depends) out += " \\\n  " + escaped(path);
+    return out + "\n";
+}
+
+Status publish(Files& files, const Args& args, const Build& build, const std::string& output) {
+    KILN_TRY(files.write(output + ".proof", build.files.proof));
+    if (args.has("--header")) {
+        // An unchanged header keeps its time stamp, so that nothing that includes it is rebuilt.
+        const auto old = files.read(args.value("--header"));
+        if (!old.ok() || !old->has_value() || **old != build.key_header)
+            KILN_TRY(files.write(args.value("--header"), as_bytes(build.key_header)));
+    }
+    if (args.has("--report-json")) KILN_TRY(files.write(args.value("--report-json"), as_bytes(as_json(build))));
+    KILN_TRY(files.write(output, build.files.table));
+    if (args.has("--depfile")) KILN_TRY(files.write(args.value("--depfile"), as_bytes(depfile(output, build.depends))));
+    return {};
+}
+
+int run_build(const Args& args) {
+    if (!args.has("--output")) return print_error({Fault::usage, "kiln build: where to? give -o TABLE.kiln"});
+    const auto options = build_options(args);
+    if (!options.ok()) return print_error(options.error());
+    auto session = Session::open(args);
+    if (!session.ok()) return print_error(session.error());
+    const Build build = run_pass(*options, *(*session)->context);
+    if (const int code = report_build(build); code != 0) return code;
+    const std::string output = args.value("--output");
+    if (const Status status = publish((*session)->files, args, build, output); !status.ok()) return print_error(status.error());
+    if (args.has("--json")) return finish(as_json(build));
+    return finish(as_text(build, output));
+}
+
+}  // namespace
+
+const Verb verb_build{
+    "build",
+    "MANIFEST -o T.kiln [--scene S]… [--target T]… [--cache DIR] [-j N] [-g] [--parse-back] [--header F] [--depfile D] "
+    "[--json | --report-json F]",
+    "compile a manifest into a variant table and its proof",
+    1,
+    1,
+    {{"--output", "-o", "FILE", "the table; its proof goes beside it as FILE.proof"},
+     option_scene,
+     {"--target", nullptr, "NAME", "instead of the manifest's targets", true},
+     option_cache,
+     option_jobs,
+     {"-g", nullptr, nullptr, "keep names and lines for debuggers; layout then tells classes apart"},
+     {"--parse-back", nullptr, nullptr, "parse and link every emitted GLSL and ESSL text again"},
+     {"--header", nullptr, "FILE", "write a C++ header with the key's bit fields"},
+     {"--depfile", nullptr, "FILE", "write the files read, for Ninja and make"},
+     option_json,
+     {"--report-json", nullptr, "FILE", "write the JSON document to a file"}},
+    "kiln build manifests/surface.yaml -o surface.kiln --target spirv --target msl21",
+    run_build};
+
+}  // namespace kiln

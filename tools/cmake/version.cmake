@@ -1,0 +1,18 @@
+# Writes OUTPUT, a source file with kiln's version and a digest of the sources it was built from, so that no cache entry of
+# one build of kiln is ever taken for another's. Run as: cmake -DROOT=… -DVERSION=… -DOUTPUT=… -P version.cmake
+file(GLOB_RECURSE sources RELATIVE ${ROOT} ${ROOT}/compiler/*.cpp ${ROOT}/compiler/*.h ${ROOT}/compiler/*.c ${ROOT}/compiler/*.hpp)
+list(SORT sources)
+set(digests "")
+foreach(source IN LISTS sources)
+  file(SHA256 ${ROOT}/${source} digest)
+  string(APPEND digests "${source} ${digest}\n")
+endforeach()
+string(SHA256 digest "${digests}")
+string(SUBSTRING "${digest}" 0 16 digest)
+set(text "#include \"compiler/pass.h\"\n\nnamespace kiln {\nconst char* const kiln_version = \"${VERSION}+${digest}\";\n}\n")
+if(EXISTS ${OUTPUT})
+  file(READ ${OUTPUT} old)
+endif()
+if(NOT "${old}" STREQUAL "${text}")
+  file(WRITE ${OUTPUT} "${text}")
+endif()

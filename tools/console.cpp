@@ -1,0 +1,98 @@
+#include "tools/console.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <mutex>
+
+namespace kiln {
+
+namespace {
+
+bool progress_shown = false;
+std::mutex progress_mutex;
+
+struct Rate {
+    std::string what;
+    std::chrono::steady_clock::time_point start, shown;
+};
+
+}  // namespace
+
+bool colour_wanted() {
+    const char* const term = std::getenv("TERM");
+    return ::isatty(STDERR_FILENO) == 1 && std::getenv("NO_COLOR") == nullptr &&
+           (term == nullptr || std::strcmp(term, "dumb") != 0);
+}
+
+void print_diags(const Diags& diags, size_t most) {
+    clear_progress();
+    const bool colour = colour_wanted();
+    size_t shown[3] = {}, hidden[3] = {};
+    for (const Diag& diag : diags.list()) {
+        const size_t kind = static_cast<size_t>(diag.severity);
+        if (shown[kind] == most) {
+            ++hidden[kind];
+            continue;
+        }
+        ++shown[kind];
+        std::fputs(render(diag, colour).c_str(), stderr);
+    }
+    if (hidden[2] != 0) std::fprintf(stderr, "kiln: and %zu more errors\n", hidden[2]);
+    if (hidden[1] != 0) std::fprintf(stderr, "kiln: and %zu more warnings\n", hidden[1]);
+}
+
+int print_error(const Error& error) {
+    clear_progress();
+    Diag diag;
+    diag.message = error.message;
+    std::fputs(render(diag, colour_wanted()).c_str(), stderr);
+    return static_cast<int>(error.fault);
+}
+
+void print_note(const std::string& text) {
+    clear_progress();
+    std::fprintf(stderr, "kiln: %s\n", text.c_str());
+}
+
+Status print_out(const std::string& text) {
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+        return environment_error(std::string("cannot write to standard output: ") + std::strerror(errno));
+    return {};
+}
+
+int finish(const std::string& text, int code) {
+    const Status status = print_out(text);
+    return status.ok() ? code : print_error(status.error());
+}
+
+Progress terminal_progress() {
+    const char* const term = std::getenv("TERM");
+    if (::isatty(STDERR_FILENO) != 1 || (term != nullptr && std::strcmp(term, "dumb") == 0)) return {};
+    return [rate = Rate()](const char* what, size_t done, size_t total) mutable {
+        const std::lock_guard lock(progress_mutex);
+        const auto now = std::chrono::steady_clock::now();
+        if (rate.what != what) rate = {what, now, {}};
+        if (done < total && now - rate.shown < std::chrono::milliseconds(100)) return;
+        rate.shown = now;
+        const double seconds = std::chrono::duration<double>(now - rate.start).count();
+        std::fprintf(stderr, "\r\x1b[K%s %zu/%zu", what, done, total);
+        if (done != 0 && done < total && seconds > 1.0)
+            std::fprintf(stderr, ", %.0f s left", seconds * static_cast<double>(total - done) / static_cast<double>(done));
+        std::fflush(stderr);
+        progress_shown = true;
+    };
+}
+
+void clear_progress() {
+    const std::lock_guard lock(progress_mutex);
+    if (!progress_shown) return;
+    std::fputs("\r\x1b[K", stderr);
+    std::fflush(stderr);
+    progress_shown = false;
+}
+
+}  // namespace kiln

@@ -1,0 +1,74 @@
+// The command line: a table of verbs, one exit, one signal handler. A stop by Ctrl-C sets a flag that every long loop watches;
+// files are only ever published whole, so nothing half-written is left; the process then ends by the signal, as make expects.
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+
+#include "compiler/base/jobs.h"
+#include "compiler/pass.h"
+#include "tools/console.h"
+#include "tools/verbs.h"
+
+namespace {
+
+volatile std::sig_atomic_t caught = 0;
+
+void on_signal(int signal) {
+    if (caught != 0) {  // asked twice: do not wait
+        std::signal(signal, SIG_DFL);
+        std::raise(signal);
+    }
+    caught = signal;
+    kiln::interrupted.store(true);
+}
+
+int dispatch(const std::vector<kiln::Verb>& verbs, const std::vector<std::string>& words) {
+    using namespace kiln;
+    if (words.empty()) return print_error({Fault::usage, "what to do? kiln --help lists the verbs"});
+    if (words[0] == "--help" || words[0] == "-h" || words[0] == "help") {
+        for (const Verb& verb : verbs)
+            if (words.size() > 1 && words[1] == verb.name) return finish(help_of(verb));
+        return finish(help_of(verbs));
+    }
+    if (words[0] == "--version") return finish(std::string("kiln ") + kiln_version + "\n" + make_toolchain()->versions() + "\n");
+    std::vector<std::string> names;
+    for (const Verb& verb : verbs) {
+        if (words[0] != verb.name) {
+            if (!verb.hidden) names.emplace_back(verb.name);
+            continue;
+        }
+        const std::vector<std::string> rest(words.begin() + 1, words.end());
+        for (const std::string& word : rest) {
+            if (word == "--") break;
+            if (word == "--help" || word == "-h") return finish(help_of(verb));
+        }
+        const auto args = Args::parse(verb, rest);
+        if (!args.ok()) return print_error(args.error());
+        return verb.run(*args);
+    }
+    const std::string near = nearest(words[0], names);
+    return print_error({Fault::usage, "no verb '" + words[0] + "'" +
+                                          (near.empty() ? "; kiln --help lists them" : "; did you mean '" + near + "'?")});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    struct sigaction action {};
+    action.sa_handler = on_signal;
+    sigemptyset(&action.sa_mask);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
+    std::signal(SIGPIPE, SIG_IGN);
+
+    const std::vector<kiln::Verb> verbs{kiln::verb_count,      kiln::verb_build,          kiln::verb_validate, kiln::verb_explain,
+                                        kiln::verb_preprocess, kiln::verb_dump,           kiln::verb_diff,     kiln::verb_cache,
+                                        kiln::verb_sheet,      kiln::verb_validate_worker};
+    const int code = dispatch(verbs, std::vector<std::string>(argv + 1, argv + argc));
+    kiln::clear_progress();
+    if (caught != 0) {
+        const int signal = caught;
+        std::signal(signal, SIG_DFL);
+        std::raise(signal);
+    }
+    return code;
+}
