@@ -6,12 +6,10 @@
 // of both frames taken out: current - previous. 0 for a point that was behind the camera, where no history can be read.
 // clip, previous_clip: clip space; jitter: NDC offsets, xy of this frame and zw of the last.
 vec2 screen_motion(vec4 clip, vec4 previous_clip, vec4 jitter) {
-    if (!(clip.w > 0.0 && previous_clip.w > 0.0)) {
-        return vec2(0.0);
-    }
-    const vec2 now = clip.xy / clip.w - jitter.xy;
-    const vec2 before = previous_clip.xy / previous_clip.w - jitter.zw;
-    return (now - before) * 0.5;
+    const bool in_front = clip.w > 0.0 && previous_clip.w > 0.0;
+    const vec2 now = clip.xy / (in_front ? clip.w : 1.0) - jitter.xy;
+    const vec2 before = previous_clip.xy / (in_front ? previous_clip.w : 1.0) - jitter.zw;
+    return in_front ? (now - before) * 0.5 : vec2(0.0);
 }
 
 #endif

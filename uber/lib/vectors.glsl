@@ -2,15 +2,12 @@
 #define KILN_VECTORS_GLSL
 // Directions and normals.
 
-// v scaled to unit length, or `fallback` when v is zero. Dividing by the largest component first keeps dot(v, v) from
-// overflowing or vanishing for any finite v. fallback: unit vector.
+// v scaled to unit length, or `fallback` when v is shorter than 1e-37. Dividing by the largest component first keeps
+// dot(v, v) from overflowing or vanishing for any finite v. fallback: unit vector.
 vec3 safe_normalize(vec3 v, vec3 fallback) {
     const float largest = max(max(abs(v.x), abs(v.y)), abs(v.z));
-    if (!(largest > 0.0)) {
-        return fallback;
-    }
-    const vec3 scaled = v / largest;
-    return scaled * inversesqrt(dot(scaled, scaled));
+    const vec3 scaled = v / max(largest, 1e-37);
+    return largest > 1e-37 ? scaled * inversesqrt(dot(scaled, scaled)) : fallback;
 }
 
 // A normal through an affine map, not normalised: the inverse transpose up to a positive factor. Made from the cofactors,
