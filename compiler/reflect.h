@@ -1,5 +1,6 @@
 #pragma once
-// What a module asks of its surroundings, in our own types.
+// What a module asks of its surroundings, in our own types. Everything that the module declares is listed, as Vulkan
+// counts it; built-in inputs and outputs are not.
 
 #include <array>
 #include <cstdint>
@@ -63,7 +64,7 @@ struct Member {
     std::string name;               // nested structures are flattened: "lights[0].position" has name "lights[].position"
     ValueType type;                 // its array dimensions include those of every enclosing array: lights[4] of w[3] is {4, 3}
     uint32_t offset = 0;            // bytes from the start of the block
-    uint32_t size = 0;              // bytes; 0 for a run-time array
+    uint32_t size = 0;              // bytes in one element of the innermost array of structures; 0 for a run-time array
     uint32_t array_stride = 0;      // of the innermost enclosing array, 0 when none
     std::vector<uint32_t> strides;  // bytes, one per dimension of type.array, outermost first
     uint32_t matrix_stride = 0;
@@ -80,7 +81,7 @@ struct Resource {
     std::vector<Member> members;
     ImageDim dim = ImageDim::none;
     bool arrayed = false, multisampled = false, depth = false;  // depth: used with a comparison sampler
-    bool readonly = false, writeonly = false;
+    bool readonly = false, writeonly = false;  // of storage blocks and images: every member says so
     BaseType sampled = BaseType::float32;
     uint32_t format = 0;  // SPIR-V ImageFormat of a storage image
     friend bool operator==(const Resource&, const Resource&) = default;
@@ -89,6 +90,8 @@ struct Resource {
 struct Varying {
     std::string name;
     uint32_t location = 0, component = 0, index = 0;
+    // Members of interface blocks and structures are varyings of their own ("Block.member"). The array of vertices around
+    // per-vertex inputs and outputs of tessellation and geometry stages is left out.
     ValueType type;
     bool flat = false, no_perspective = false, centroid = false, sample = false, patch = false;
     friend bool operator==(const Varying&, const Varying&) = default;
@@ -99,7 +102,7 @@ struct Reflection {
     std::string entry = "main";
     std::vector<Resource> resources;       // by set, binding, kind, name; push constants last
     std::vector<Varying> inputs, outputs;  // user-defined ones, by location, component
-    std::array<uint32_t, 3> workgroup{0, 0, 0};
+    std::array<uint32_t, 3> workgroup{0, 0, 0};  // 0 for stages that have none; a specialisable size by its default
     bool writes_depth = false, discards = false;
     friend bool operator==(const Reflection&, const Reflection&) = default;
 };

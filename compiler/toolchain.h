@@ -27,23 +27,29 @@ struct Compiled {
     std::vector<ToolMessage> messages;
 };
 
-// Where each resource of a shader lives in each target, assigned once from the union of its variants.
+// Where each resource of a shader lives in each target, assigned once from the union of its variants (compiler/slots.cpp). An
+// array takes as many consecutive numbers as it has elements. Numbers that a kind does not use are 0.
 struct Slot {
     ResourceKind kind = ResourceKind::uniform_block;
-    uint32_t set = 0, binding = 0;  // Vulkan's, the key
-    std::string name;
-    uint32_t buffer = 0, texture = 0, sampler = 0,
-             image = 0;  // numbers in the target's spaces: GL binding, HLSL b/t/s/u, MSL index
+    uint32_t set = 0, binding = 0;  // Vulkan's, the key together with kind
+    std::string name;               // distinct within the layout
+    uint32_t buffer = 0;            // GL uniform-block binding and HLSL b; of a storage block: GL storage-block binding
+    uint32_t texture = 0;           // GL texture unit and HLSL t; of a read-only storage block: HLSL t
+    uint32_t sampler = 0;           // HLSL s and Metal [[sampler]]
+    uint32_t image = 0;             // GL image unit
+    uint32_t uav = 0;               // HLSL u of storage blocks, images and texels
+    uint32_t metal_buffer = 0;      // Metal [[buffer]]
+    uint32_t metal_texture = 0;     // Metal [[texture]]
+    // GL has no separate samplers: image and sampler together take the unit image.texture + sampler.unit_offset, and an image
+    // that is only fetched image.texture + image.unit_offset.
+    uint32_t unit_offset = 0;
+    friend bool operator==(const Slot&, const Slot&) = default;
 };
 
 struct SlotLayout {
-    std::vector<Slot> slots;  // by set, binding; push constants last with set = binding = ~0u
+    std::vector<Slot> slots;  // by set, binding, kind; push constants last with set = binding = ~0u
     friend bool operator==(const SlotLayout&, const SlotLayout&) = default;
 };
-inline bool operator==(const Slot& a, const Slot& b) {
-    return a.kind == b.kind && a.set == b.set && a.binding == b.binding && a.name == b.name && a.buffer == b.buffer &&
-           a.texture == b.texture && a.sampler == b.sampler && a.image == b.image;
-}
 
 // A text, or why the target cannot say it.
 struct Translated {
