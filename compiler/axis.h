@@ -17,9 +17,10 @@ enum class AxisKind : uint8_t {  // on disk: append only
 };
 
 struct AxisValue {
-    std::string name;
+    std::string name;  // of an integer: its decimal form, however it was written
     int32_t number = 0;
-    friend bool operator==(const AxisValue&, const AxisValue&) = default;
+    uint32_t line = 0, column = 0;  // where it is written, in the file of Axis::place; 0 for the two values of bool and defined
+    friend bool operator==(const AxisValue& a, const AxisValue& b) { return a.name == b.name && a.number == b.number; }
 };
 
 // A *digit* is an index into `values`; a *number* is what the macro expands to.
@@ -28,7 +29,8 @@ struct Axis {
     std::string macro;
     AxisKind kind = AxisKind::named;
     std::vector<AxisValue> values;
-    Place place;
+    Place place;              // of the axis's name
+    std::string source_line;  // the line that `place` points into
 };
 
 using Digits = std::vector<uint32_t>;  // one digit per axis of a space, in the order of the shader's axes

@@ -47,11 +47,25 @@ struct ExprError {
     std::string message;  // with the nearest right name where a name is unknown
 };
 
+inline constexpr size_t expr_size_limit = 64 * 1024;  // bytes
+inline constexpr unsigned expr_level_limit = 1000;    // open parentheses and negations at once
+
 // Resolves names against `axes`: beside a comparison's axis, an identifier is first a value name of that axis, then an axis.
-// A bare axis means "number is not zero". At most 64 KiB of text and 1,000 levels of nesting.
+// A bare axis means "number is not zero". The first mistake is the one reported.
 std::variant<Expr, ExprError> parse_expr(std::string_view text, const std::vector<Axis>& axes);
 
 // True when the expression holds for these macro numbers (one per axis). The slow oracle for the diagram.
 bool evaluate(const Expr& expr, const std::vector<int32_t>& numbers);
+
+struct ParsedInteger {
+    int32_t number = 0;
+    const char* problem = nullptr;  // why the text is not a 32-bit integer; null when it is
+};
+
+// Decimal or 0x, with '-' for negative ones; no '+', no leading zeros.
+ParsedInteger parse_integer(std::string_view text);
+
+// " (did you mean 'light'?)", or nothing when no candidate is near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace kiln

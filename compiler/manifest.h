@@ -39,11 +39,13 @@ struct StageFile {
     Stage stage = Stage::vertex;
     std::string file;  // as written
     Place place;
+    std::string source_line;
 };
 
 struct Shader {
     std::string name;
-    Place place;
+    Place place;  // of the name
+    std::string source_line;
     std::vector<StageFile> stages;  // ascending by Stage
     std::vector<uint32_t> axes;     // indices into Manifest::axes, in the manifest's order
     std::vector<Rule> rules;        // those of the shader, and those of the manifest that it has all axes of
@@ -52,7 +54,7 @@ struct Shader {
 };
 
 struct Manifest {
-    std::string name;
+    std::string name;                  // the file's name without its ending when the file gives none
     std::string path;                  // as given
     std::string folder;                // of the manifest; names in outputs are relative to it
     std::vector<std::string> include;  // as written
@@ -61,6 +63,12 @@ struct Manifest {
     std::vector<Axis> axes;
     std::vector<Shader> shaders;
 };
+
+// Limits, beside those of YAML text (yaml.h) and of expressions (expr.h).
+inline constexpr size_t axis_limit = 4096;
+inline constexpr size_t axis_value_limit = 65536;       // values of one axis
+inline constexpr size_t value_limit = size_t{1} << 21;  // values of all axes
+inline constexpr size_t name_limit = 255;               // bytes of a name or a macro
 
 // Reads and checks a manifest. Errors go to `diags`; nullopt when there were any.
 std::optional<Manifest> load_manifest(Files& files, const std::string& path, Diags& diags);

@@ -1,0 +1,96 @@
+#include "compiler/yaml_fields.h"
+
+#include "compiler/expr.h"
+
+namespace kiln {
+
+Fields::Fields(const Yaml& yaml, YamlErrors& errors, Yaml::Node node, std::string what, std::initializer_list<const char*> known)
+    : yaml_(yaml), errors_(errors), node_(node), what_(std::move(what)), is_map_(yaml.kind(node) == YamlKind::map) {
+    if (!is_map_) {
+        errors_.at(node, what_ + " must be a map, this is " + describe(yaml, node));
+        return;
+    }
+    pairs_ = yaml.pairs(node);
+    const std::vector<std::string> names(known.begin(), known.end());
+    for (const Yaml::Pair& pair : pairs_) {
+        const std::string_view key = yaml.value(pair.key);
+        bool found = false;
+        for (const std::string& name : names) found = found || name == key;
+        if (!found) errors_.at(pair.key, "unknown key " + quoted(key) + " in " + what_ + did_you_mean(key, names));
+    }
+}
+
+const Yaml::Pair* Fields::find(std::string_view key) const {
+    for (const Yaml::Pair& pair : pairs_)
+        if (yaml_.value(pair.key) == key) return &pair;
+    return nullptr;
+}
+
+const Yaml::Pair* Fields::need(std::string_view key) {
+    const Yaml::Pair* const pair = find(key);
+    if (pair == nullptr && is_map_) errors_.at(node_, what_ + " needs a '" + std::string(key) + "'");
+    return pair;
+}
+
+std::string describe(const Yaml& yaml, Yaml::Node node) {
+    switch (yaml.kind(node)) {
+        case YamlKind::null:
+            return "empty";
+        case YamlKind::scalar:
+            return "the text " + quoted(yaml.value(node));
+        case YamlKind::sequence:
+            return "a list";
+        case YamlKind::map:
+            return "a map";
+    }
+    return {};
+}
+
+std::optional<std::string> read_text(const Yaml& yaml, YamlErrors& errors, Yaml::Node node, const std::string& what) {
+    if (yaml.kind(node) == YamlKind::scalar && !yaml.value(node).empty()) return std::string(yaml.value(node));
+    errors.at(node, what + " must be text, this is " +
+                        (yaml.kind(node) == YamlKind::scalar ? std::string("empty") : describe(yaml, node)));
+    return std::nullopt;
+}
+
+std::optional<bool> read_bool(const Yaml& yaml, YamlErrors& errors, Yaml::Node node, const std::string& what) {
+    if (yaml.is_plain(node) && yaml.value(node) == "true") return true;
+    if (yaml.is_plain(node) && yaml.value(node) == "false") return false;
+    errors.at(node, what + " must be true or false, this is " + describe(yaml, node));
+    return std::nullopt;
+}
+
+std::optional<size_t> read_choice(const Yaml& yaml, YamlErrors& errors, Yaml::Node node, const std::string& what,
+                                  const std::vector<std::string>& names) {
+    const std::optional<std::string> text = read_text(yaml, errors, node, what);
+    if (!text) return std::nullopt;
+    for (size_t i = 0; i < names.size(); ++i)
+        if (names[i] == *text) return i;
+    std::string all;
+    for (size_t i = 0; i < names.size(); ++i) all += (i == 0 ? "" : ", ") + names[i];
+    errors.at(node, what + " cannot be " + quoted(*text) + did_you_mean(*text, names), {"one of: " + all});
+    return std::nullopt;
+}
+
+std::vector<Yaml::Node> read_list(const Yaml& yaml, YamlErrors& errors, Yaml::Node node, const std::string& what) {
+    if (yaml.kind(node) != YamlKind::sequence) errors.at(node, what + " must be a list, this is " + describe(yaml, node));
+    return yaml.items(node);
+}
+
+bool is_identifier(std::string_view text) {
+    if (text.empty()) return false;
+    for (size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+        if (!letter && (i == 0 || c < '0' || c > '9')) return false;
+    }
+    return true;
+}
+
+std::string quoted(std::string_view text) {
+    std::string out = "'";
+    for (const char c : text.substr(0, 64)) out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    return out + (text.size() > 64 ? "...'" : "'");
+}
+
+}  // namespace kiln
