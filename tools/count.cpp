@@ -73,6 +73,19 @@ std::string as_text(Build& build, bool classes) {
     return out + "\n";
 }
 
+// Up to `most` needed variants, one a line: the shader, then axis=value words.
+std::string as_list(Build& build, uint64_t most) {
+    std::string out;
+    for (const auto& space : build.spaces)
+        space->diagram->enumerate(space->needed, [&](const Digits& digits) {
+            if (most == 0) return false;
+            --most;
+            out += space->shader + " " + space->describe_variant(digits) + "\n";
+            return true;
+        });
+    return out;
+}
+
 int run_count(const Args& args) {
     const auto options = build_options(args);
     if (!options.ok()) return print_error(options.error());
@@ -81,22 +94,28 @@ int run_count(const Args& args) {
     const bool classes = args.has("--classes");
     Build build;
     pass_spaces(build, *options, *(*session)->context);
+    const auto list = args.number("--list", 0, 1, 1'000'000'000);
+    if (!list.ok()) return print_error(list.error());
     if (classes && build.ok()) pass_classes(build, *options, *(*session)->context);
     build.diags.sort();
     if (const int code = report_build(build); code != 0) return code;
+    if (*list != 0 && !args.has("--json")) return finish(as_list(build, *list));
     return finish(args.has("--json") ? as_json(build, classes) : as_text(build, classes));
 }
 
 }  // namespace
 
-const Verb verb_count{
-    "count",
-    "MANIFEST [--scene S]… [--classes] [--json]",
-    "count variants exactly, per axis value; with --classes also the distinct token streams",
-    1,
-    1,
-    {option_scene, {"--classes", nullptr, nullptr, "preprocess, and count classes per stage"}, option_json, option_cache},
-    "kiln count manifests/surface.yaml --classes",
-    run_count};
+const Verb verb_count{"count",
+                      "MANIFEST [--scene S]… [--classes] [--json]",
+                      "count variants exactly, per axis value; with --classes also the distinct token streams",
+                      1,
+                      1,
+                      {option_scene,
+                       {"--classes", nullptr, nullptr, "preprocess, and count classes per stage"},
+                       {"--list", nullptr, "N", "print up to N needed variants instead, one a line"},
+                       option_json,
+                       option_cache},
+                      "kiln count manifests/surface.yaml --classes",
+                      run_count};
 
 }  // namespace kiln
