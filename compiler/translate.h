@@ -1,6 +1,9 @@
 #pragma once
 // Modules to artifacts, with slots assigned once per shader from the union of its variants.
 
+#include <array>
+#include <map>
+
 #include "compiler/modules.h"
 
 namespace kiln {
@@ -17,6 +20,8 @@ struct Artifacts {
     // share a module may differ in slots, hence the first index.
     std::vector<std::vector<std::vector<uint32_t>>> of;
     std::vector<SlotLayout> slots;  // per shader
+    // {shader index, target index, module index} -> why the target cannot say it: the stated holes of the table.
+    std::map<std::array<uint32_t, 3>, std::string> refusals;
     Diags diags;
     uint64_t translated = 0, cache_hits = 0;
 };
