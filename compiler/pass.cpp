@@ -4,6 +4,7 @@
 #include <chrono>
 #include <set>
 
+#include "compiler/blame.h"
 #include "compiler/describe.h"
 #include "compiler/memo.h"
 #include "compiler/set_wire.h"
@@ -37,6 +38,15 @@ bool stopped(Build& build) {
 void note_store_failure(Build& build, const Status& status) {
     if (status.ok()) return;
     if (build.work.store_failures++ == 0) build.diags.warning({}, "the cache failed: " + status.error().message);
+}
+
+// Stages after the preprocessor name files relative to the manifest, so that records hold anywhere; people want them as opened.
+void append_rebased(Build& build, const Diags& diags) {
+    for (const Diag& d : diags.list()) {
+        Place place = d.place;
+        if (!place.file.empty()) place.file = join_path(build.manifest->folder, place.file);
+        build.diags.add(d.severity, std::move(place), d.message, d.source_line).notes = d.notes;
+    }
 }
 
 // Everything that decides a stage's classes except the contents of files.
@@ -266,8 +276,10 @@ void pass_table(Build& build, const BuildOptions& options, PassContext& context)
     const Manifest& manifest = *build.manifest;
     {
         const Timed timed(build, "modules");
-        build.modules = build_modules(build.stages, context.store, context.tools, context.jobs, context.progress);
-        build.diags.append(build.modules.diags);
+        build.modules = build_modules(build.stages, context.store, context.tools, context.jobs, context.progress,
+                                      source_lines(context.files, manifest.folder));
+        build.work.store_failures += build.modules.store_failures;
+        append_rebased(build, build.modules.diags);
         build.counts.raw = build.modules.raw;
         build.counts.pruned = build.modules.pruned;
         build.counts.modules = build.modules.list.size();
