@@ -31,13 +31,20 @@ struct Modules {
     std::vector<Module> list;                     // distinct, in order of first use
     std::vector<std::vector<uint32_t>> of_class;  // [stage index][class index] -> module
     Diags diags;
-    uint64_t raw = 0, pruned = 0;  // distinct counts
-    uint64_t compiled = 0, optimised = 0, cache_hits = 0;
+    uint64_t raw = 0, pruned = 0;                          // distinct counts
+    uint64_t compiled = 0, optimised = 0, cache_hits = 0;  // parses; modules; classes found in the store
+    uint64_t store_failures = 0;                           // gets and puts that failed; the first one is a warning
 };
 
 using Progress = std::function<void(const char* what, size_t done, size_t total)>;
 
+// Line `line` (from 1) of a file that Split::files names, for the caret under an error; empty when it cannot be had.
+using SourceLines = std::function<std::string(const std::string& file, uint32_t line)>;
+
+// Every class is compiled before any error is reported; after an error nothing is optimised and `list` is empty. Warnings are
+// kept in the store's records and shown again on a hit. A store that fails costs time and a warning, never the build. The result
+// depends on the classes, the options and the tools alone: neither on threads nor on what the store holds.
 Modules build_modules(const std::vector<StageClasses>& stages, Store& store, Toolchain& tools, const Jobs& jobs,
-                      const Progress& progress);
+                      const Progress& progress, const SourceLines& lines = {});
 
 }  // namespace kiln
