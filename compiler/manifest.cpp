@@ -26,13 +26,6 @@ Names stage_names() {
     return names;
 }
 
-std::string stem_of(const std::string& path) {
-    const size_t slash = path.rfind('/');
-    const std::string file = slash == std::string::npos ? path : path.substr(slash + 1);
-    const size_t dot = file.rfind('.');
-    return dot == std::string::npos || dot == 0 ? file : file.substr(0, dot);
-}
-
 // Why these stages cannot be one shader, or empty. A lone vertex or fragment stage is fine: its partner is another shader's.
 std::string stage_clash(const std::vector<StageFile>& stages) {
     const auto has = [&](Stage s) {

@@ -44,6 +44,7 @@ public:
     Place place(Node n) const { return place_at(nodes_[n].offset); }
     // Of byte `value_offset` of a scalar's value, wherever quoting, escapes and folding have put it in the file.
     Place place_in(Node n, size_t value_offset) const;
+    const std::string& text() const { return text_; }  // without its BOM
     // The line of a place of this file; shortened, or empty, when it is far too long to show.
     std::string source_line(const Place& place) const;
 

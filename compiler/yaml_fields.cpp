@@ -87,6 +87,13 @@ bool is_identifier(std::string_view text) {
     return true;
 }
 
+std::string stem_of(const std::string& path) {
+    const size_t slash = path.rfind('/');
+    const std::string file = slash == std::string::npos ? path : path.substr(slash + 1);
+    const size_t dot = file.rfind('.');
+    return dot == std::string::npos || dot == 0 ? file : file.substr(0, dot);
+}
+
 std::string quoted(std::string_view text) {
     std::string out = "'";
     for (const char c : text.substr(0, 64)) out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;

@@ -44,5 +44,7 @@ std::vector<Yaml::Node> read_list(const Yaml& yaml, YamlErrors& errors, Yaml::No
 bool is_identifier(std::string_view text);
 // In quotes, cut when very long.
 std::string quoted(std::string_view text);
+// A path's last part without its ending.
+std::string stem_of(const std::string& path);
 
 }  // namespace kiln
