@@ -1,0 +1,143 @@
+// Disks that say no: full, read-only, forbidden, out of descriptors. Each is an Error, and what was there stays.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <functional>
+
+#include "cache/disk_store.h"
+#include "tests/unit/cache/folder.h"
+
+namespace kiln {
+namespace {
+
+constexpr int skipped = 77;
+
+// Runs `body` in a child, where limits and identities may be changed; its result is the exit code.
+int in_child(const std::function<int()>& body) {
+    const pid_t child = ::fork();
+    if (child == 0) ::_exit(body());
+    int status = 0;
+    if (child < 0 || ::waitpid(child, &status, 0) != child || !WIFEXITED(status)) return 99;
+    return WEXITSTATUS(status);
+}
+
+bool holds(DiskStore& store, std::string_view text) {
+    const auto got = store.get(Keyspace::blob, name_of(text));
+    return got.ok() && got->has_value() && as_text(**got) == text;
+}
+
+Status put(DiskStore& store, std::string_view text) { return store.put(Keyspace::blob, name_of(text), as_bytes(text)); }
+
+TEST(DiskStoreFaults, AFileSizeLimitFailsInTheMiddleOfAWrite) {
+    const TestFolder folder;
+    const int code = in_child([&] {
+        auto store = DiskStore::open(folder.path());
+        if (!put(**store, "before").ok()) return 1;
+        ::signal(SIGXFSZ, SIG_IGN);
+        const rlimit limit{10'000, 10'000};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+        const std::string big(50'000, 'b');
+        const Status failed = put(**store, big);
+        if (failed.ok() || failed.error().fault != Fault::environment) return 2;
+        if (holds(**store, big) || !holds(**store, "before") || !put(**store, "after").ok()) return 3;
+        return (*store)->stats()->temporary.entries == 0 ? 0 : 4;
+    });
+    EXPECT_EQ(code, 0);
+}
+
+TEST(DiskStoreFaults, NoFreeDescriptorIsAnErrorAndNoMiss) {
+    const TestFolder folder;
+    const int code = in_child([&] {
+        auto store = DiskStore::open(folder.path());
+        if (!put(**store, "before").ok()) return 1;
+        const rlimit limit{0, 0};
+        ::setrlimit(RLIMIT_NOFILE, &limit);
+        if ((*store)->get(Keyspace::blob, name_of("before")).ok()) return 2;
+        if (put(**store, "after").ok()) return 3;
+        return (*store)->counters().failures == 2 && (*store)->counters().corrupt == 0 ? 0 : 4;
+    });
+    EXPECT_EQ(code, 0);
+}
+
+// Gives up root, whom no permission stops. False when this process may not be held back at all.
+bool become_ordinary(const std::string& folder) {
+    if (::geteuid() != 0) return true;
+    constexpr uid_t nobody = 65534;
+    std::filesystem::permissions(folder, std::filesystem::perms(0755));
+    return ::setgid(nobody) == 0 && ::setuid(nobody) == 0;
+}
+
+TEST(DiskStoreFaults, AReadOnlyFolderServesReads) {
+    const TestFolder folder;
+    ASSERT_TRUE(put(**DiskStore::open(folder.path()), "before").ok());
+    const std::string damaged = path_of(folder.path(), Keyspace::action, name_of("bad"));
+    std::filesystem::create_directories(std::filesystem::path(damaged).parent_path());
+    write_file(damaged, "not a record");
+    const auto all = std::filesystem::perms(0555);
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path()))
+        if (entry.is_directory()) std::filesystem::permissions(entry.path(), all);
+    std::filesystem::permissions(folder.path(), all);
+    const int code = in_child([&] {
+        if (!become_ordinary(folder.path())) return skipped;
+        auto store = DiskStore::open(folder.path());
+        if (!store.ok()) return 1;
+        if (!holds(**store, "before")) return 2;
+        if (put(**store, "after").ok()) return 3;
+        const auto got = (*store)->get(Keyspace::action, name_of("bad"));
+        if (!got.ok() || got->has_value()) return 4;  // damaged and not removable: still absent
+        if ((*store)->clear().ok()) return 5;
+        return holds(**store, "before") ? 0 : 6;
+    });
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path()))
+        if (entry.is_directory()) std::filesystem::permissions(entry.path(), std::filesystem::perms(0755));
+    if (code == skipped) GTEST_SKIP() << "cannot give up root here";
+    EXPECT_EQ(code, 0);
+}
+
+TEST(DiskStoreFaults, AFolderThatMayNotBeEnteredIsAnError) {
+    const TestFolder folder;
+    const std::string inner = folder.path() + "/closed";
+    std::filesystem::create_directories(inner);
+    std::filesystem::permissions(inner, std::filesystem::perms::none);
+    const int code = in_child([&] {
+        if (!become_ordinary(folder.path())) return skipped;
+        if (DiskStore::open(inner).ok()) return 1;
+        return DiskStore::open(inner + "/below").ok() ? 2 : 0;
+    });
+    if (code == skipped) GTEST_SKIP() << "cannot give up root here";
+    EXPECT_EQ(code, 0);
+}
+
+TEST(DiskStoreFaults, AFullDiskIsAnErrorAndLosesNothing) {
+    const TestFolder folder;
+    if (::mount("tmpfs", folder.path().c_str(), "tmpfs", 0, "size=1m") != 0)
+        GTEST_SKIP() << "may not mount a small tmpfs (needs root)";
+    {
+        auto store = DiskStore::open(folder.path());
+        ASSERT_TRUE(store.ok());
+        std::vector<std::string> kept;
+        size_t refused = 0;
+        for (int i = 0; i < 60; ++i) {
+            const std::string text = std::to_string(i) + std::string(50'000, 'f');
+            if (put(**store, text).ok())
+                kept.push_back(text);
+            else
+                ++refused;
+        }
+        EXPECT_GT(kept.size(), 10u);
+        EXPECT_GT(refused, 10u);
+        for (const std::string& text : kept) EXPECT_TRUE(holds(**store, text));
+        EXPECT_EQ((*store)->stats()->temporary.entries, 0u);
+        EXPECT_EQ((*store)->counters().corrupt, 0u);
+        EXPECT_TRUE((*store)->clear().ok());
+        EXPECT_TRUE(put(**store, "room again").ok());
+    }
+    EXPECT_EQ(::umount(folder.path().c_str()), 0);
+}
+
+}  // namespace
+}  // namespace kiln
