@@ -24,14 +24,17 @@ public:
     std::string describe_variant(const Digits& digits) const;
 };
 
-// Compiles the rules. Errors (a rule that grows the diagram past its limit) go to `diags`. Warnings are lint()'s business.
-std::unique_ptr<Space> build_space(const Manifest& manifest, const Shader& shader, Diags& diags);
+// Compiles the rules. A rule that grows the diagram past its limit is an error in `diags` that names the rules that grow it,
+// and the result is null. Warnings are lint()'s business.
+std::unique_ptr<Space> build_space(const Manifest& manifest, const Shader& shader, Diags& diags,
+                                   size_t node_limit = Diagram::default_node_limit);
 
 // The set in which an expression over the space's axes holds.
 Set compile_expr(Space& space, const Expr& expr);
 
-// Warnings with places: a value that can never occur, a rule implied by all the others; an error when the rules leave
-// nothing, naming a smallest set of rules that clash.
+// Warnings with places: a value that no shader can ever have, a rule that excludes nothing or is implied by all the others
+// (in every shader that has it); an error when the rules leave nothing, naming a smallest set of rules that clash. Work is
+// bounded: past 2 million nodes a shader's rules are not looked at for implied ones, and a note says so.
 void lint(const Manifest& manifest, std::vector<std::unique_ptr<Space>>& spaces, Diags& diags);
 
 }  // namespace kiln
