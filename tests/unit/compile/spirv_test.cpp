@@ -136,7 +136,7 @@ TEST(Names, EveryTruncationIsRefusedOrWellFormed) {
     for (size_t n = 0; n < words.size(); ++n) {
         const Words cut(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(n));
         const Result<Words> out = keep_interface_names(cut);
-        if (out.ok()) EXPECT_LE(out->size(), n);
+        EXPECT_TRUE(!out.ok() || out->size() <= n);
     }
 }
 
