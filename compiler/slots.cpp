@@ -1,0 +1,141 @@
+// Slots come from the union of all variants of a shader and are handed out in the order of set and binding, so that one
+// resource has one number in every variant. Each target counts in its own spaces; each space is dense, because the limits
+// are low (4 storage blocks in ESSL 310, 16 Metal samplers).
+//
+// Two things need care. HLSL's u registers share a space with render targets in shader model 5.0, so they start after the
+// fragment outputs. And an array sized at run time comes last in its spaces, since nothing can follow it.
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "compiler/translate.h"
+
+namespace kiln {
+namespace {
+
+struct Entry {
+    std::string name;
+    uint64_t count = 1;
+    bool unsized = false;
+};
+
+using Key = std::tuple<bool, uint32_t, uint32_t, ResourceKind>;  // push constants last
+
+Key key_of(const Resource& r) {
+    const bool push = r.kind == ResourceKind::push_constants;
+    return {push, push ? ~0U : r.set, push ? ~0U : r.binding, r.kind};
+}
+
+struct Counters {
+    uint32_t uniform = 0, storage = 0, texture = 0, sampler = 0, image = 0, uav = 0, metal_buffer = 0, metal_texture = 0;
+};
+
+uint32_t take(uint32_t& counter, uint32_t count) {
+    const uint32_t first = counter;
+    counter += count;
+    return first;
+}
+
+void number(Slot& s, uint32_t count, Counters& c) {
+    switch (s.kind) {
+        case ResourceKind::uniform_block:
+        case ResourceKind::push_constants:
+            s.buffer = take(c.uniform, count);
+            s.metal_buffer = take(c.metal_buffer, count);
+            break;
+        case ResourceKind::storage_block:
+            s.buffer = take(c.storage, count);
+            s.uav = take(c.uav, count);
+            s.metal_buffer = take(c.metal_buffer, count);
+            break;
+        case ResourceKind::combined_image:
+            s.texture = take(c.texture, count);
+            s.sampler = take(c.sampler, count);
+            s.metal_texture = take(c.metal_texture, count);
+            break;
+        case ResourceKind::separate_image:
+        case ResourceKind::uniform_texels:
+        case ResourceKind::input_attachment:
+            s.texture = take(c.texture, count);
+            s.metal_texture = take(c.metal_texture, count);
+            break;
+        case ResourceKind::separate_sampler:
+            s.sampler = take(c.sampler, count);
+            break;
+        case ResourceKind::storage_image:
+        case ResourceKind::storage_texels:
+            s.image = take(c.image, count);
+            s.uav = take(c.uav, count);
+            s.metal_texture = take(c.metal_texture, count);
+            break;
+        case ResourceKind::acceleration_structure:
+            s.texture = take(c.texture, count);
+            s.metal_buffer = take(c.metal_buffer, count);
+            break;
+    }
+}
+
+std::map<Key, Entry> unite(const std::vector<const Reflection*>& modules) {
+    std::map<Key, Entry> all;
+    for (const Reflection* m : modules)
+        for (const Resource& r : m->resources) {
+            Entry& e = all[key_of(r)];
+            if (e.name.empty()) e.name = r.name;
+            uint64_t count = 1;
+            for (const uint32_t length : r.array) {
+                e.unsized |= length == 0;
+                count = std::min<uint64_t>(count * std::max(length, 1U), 0xffff);
+            }
+            e.count = std::max(e.count, count);
+        }
+    return all;
+}
+
+}  // namespace
+
+SlotLayout assign_slots(const std::vector<const Reflection*>& modules) {
+    const std::map<Key, Entry> all = unite(modules);
+    Counters counters;
+    for (const Reflection* m : modules) {
+        if (m->stage != Stage::fragment) continue;
+        for (const Varying& v : m->outputs) {
+            uint32_t taken = 1;
+            for (const uint32_t length : v.type.array) taken *= std::max(length, 1U);
+            counters.uav = std::max(counters.uav, v.location + taken);
+        }
+    }
+
+    SlotLayout out;
+    std::set<std::string> names;
+    for (const auto& [key, entry] : all) {
+        Slot s;
+        std::tie(std::ignore, s.set, s.binding, s.kind) = key;
+        s.name = entry.name;
+        if (!names.insert(s.name).second) {
+            s.name += "_s" + std::to_string(s.set) + "b" + std::to_string(s.binding);
+            names.insert(s.name);
+        }
+        out.slots.push_back(std::move(s));
+    }
+    for (const bool unsized : {false, true}) {
+        auto slot = out.slots.begin();
+        for (const auto& [key, entry] : all) {
+            if (entry.unsized == unsized) number(*slot, static_cast<uint32_t>(entry.count), counters);
+            ++slot;
+        }
+    }
+    const uint32_t units = counters.texture;
+    for (Slot& s : out.slots)  // after every texture: read-only blocks' t registers are no GL units
+        if (s.kind == ResourceKind::storage_block)
+            s.texture = take(counters.texture, static_cast<uint32_t>(all.at({false, s.set, s.binding, s.kind}).count));
+    uint32_t samplers = 0;
+    for (Slot& s : out.slots)
+        if (s.kind == ResourceKind::separate_sampler) s.unit_offset = units * samplers++;
+    for (Slot& s : out.slots)
+        if (s.kind == ResourceKind::separate_image) s.unit_offset = units * samplers;
+    return out;
+}
+
+}  // namespace kiln
