@@ -5,10 +5,11 @@
 #include <dirent.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <random>
+#include <ctime>
 #include <vector>
 
 namespace kiln {
@@ -58,12 +59,13 @@ Error io_error(const std::string& path, const char* doing, int code) {
 const char* folder_name(Keyspace space) { return space == Keyspace::action ? "action" : "blob"; }
 
 std::string temporary_name() {
-    thread_local std::mt19937_64 generator([] {
-        std::random_device device;
-        return (uint64_t{device()} << 32) ^ device();
-    }());
-    // The process is mixed in at each call, for children that inherit the generator's state.
-    const uint64_t value = generator() ^ (static_cast<uint64_t>(::getpid()) * 0x9e3779b97f4a7c15u);
+    // Collisions only cost another try, since drafts are created exclusively: a clock, a process and a count are enough.
+    static std::atomic<uint64_t> serial{0};
+    timespec now{};
+    ::clock_gettime(CLOCK_REALTIME, &now);
+    const uint64_t parts[] = {static_cast<uint64_t>(now.tv_sec), static_cast<uint64_t>(now.tv_nsec),
+                              static_cast<uint64_t>(::getpid()), serial++};
+    const uint64_t value = xxh3({reinterpret_cast<const uint8_t*>(parts), sizeof parts}).low;
     char text[17];
     std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
     return text + std::string(temporary_suffix);
