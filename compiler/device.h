@@ -95,9 +95,10 @@ struct PipelineOutput {
 };
 
 struct DeviceInfo {
-    std::string name;    // the driver's deviceName, verbatim
-    std::string driver;  // driver name, its version text, API version
-    std::string layers;  // validation layers and their version
+    std::string name;      // the driver's deviceName, verbatim
+    std::string driver;    // driver name, its version text, API version
+    std::string layers;    // validation layers and their version
+    std::string settings;  // what else decides results: "GALLIVM_PERF=no_aos_sampling,nopt LP_NUM_THREADS=0"
 };
 
 class Device {

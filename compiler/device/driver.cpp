@@ -80,4 +80,8 @@ void apply_driver(const std::string& icd, const DriverChoice& choice) {
     if (!choice.cache_dir.empty()) setenv("MESA_SHADER_CACHE_DIR", choice.cache_dir.c_str(), 1);
 }
 
+std::string driver_settings() {
+    return "GALLIVM_PERF=" + from_environment("GALLIVM_PERF") + " LP_NUM_THREADS=" + from_environment("LP_NUM_THREADS");
+}
+
 }  // namespace kiln

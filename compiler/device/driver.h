@@ -21,4 +21,7 @@ Result<std::string> find_driver(const DriverChoice& choice);
 // Vulkan call and before threads start. Variables that the user has set stay, but for the choice of driver.
 void apply_driver(const std::string& icd, const DriverChoice& choice);
 
+// The variables of those that decide results, as they are now.
+std::string driver_settings();
+
 }  // namespace kiln

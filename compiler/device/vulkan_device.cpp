@@ -273,6 +273,7 @@ Result<std::unique_ptr<Device>> open_vulkan_device(const DriverChoice& choice) {
     apply_driver(*icd, choice);
     Result<std::unique_ptr<Context>> context = Context::open();
     KILN_TRY(context);
+    (*context)->info.settings = driver_settings();
     auto device = std::make_unique<VulkanDevice>(std::move(*context));
     if (!device->usable()) return environment_error("the Vulkan device refuses our own set-up");
     return std::unique_ptr<Device>(std::move(device));
