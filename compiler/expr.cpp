@@ -397,8 +397,12 @@ private:
 }  // namespace
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
-    const std::string best = nearest(word, candidates);
-    return best.empty() ? std::string() : " (did you mean '" + best + "'?)";
+    const std::string best = word.size() < 2 ? std::string() : nearest(word, candidates);
+    if (!best.empty()) return " (did you mean '" + best + "'?)";
+    if (candidates.empty() || candidates.size() > 8) return {};
+    std::string all;
+    for (const std::string& candidate : candidates) all += (all.empty() ? "" : ", ") + candidate;
+    return all.size() > 200 ? std::string() : " (known: " + all + ")";
 }
 
 ParsedInteger parse_integer(std::string_view text) {

@@ -65,7 +65,7 @@ struct ParsedInteger {
 // Decimal or 0x, with '-' for negative ones; no '+', no leading zeros.
 ParsedInteger parse_integer(std::string_view text);
 
-// " (did you mean 'light'?)", or nothing when no candidate is near.
+// " (did you mean 'light'?)"; when no candidate is near and they are few, " (known: light, pass)"; else nothing.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace kiln

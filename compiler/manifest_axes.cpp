@@ -173,8 +173,8 @@ private:
                                  quoted(name) + " of " + what_ + " has the same number as " + quoted(in_.yaml.value(*earlier)) +
                                      ": " + std::to_string(number),
                                  {"first at " + to_string(in_.yaml.place(*earlier))});
-        const Place place = in_.yaml.place(node);
-        axis_.values.push_back({std::move(name), number, place.line, place.column});
+        const YamlSpot spot = in_.yaml.spot(node);
+        axis_.values.push_back({std::move(name), number, spot.line, spot.column});
     }
 
     ManifestText in_;

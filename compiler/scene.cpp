@@ -31,7 +31,7 @@ public:
 
 private:
     SceneSpot spot(Yaml::Node node) const {
-        const Place place = yaml_.place(node);
+        const YamlSpot place = yaml_.spot(node);
         return {place.line, place.column};
     }
 

@@ -1,8 +1,9 @@
-// yaml-cpp's event interface, because its Node interface hides anchors, duplicate keys and further documents. Three of the
+// yaml-cpp's event interface, because its Node interface hides anchors, duplicate keys and further documents. Four of the
 // library's habits need guarding against:
 //   - it takes the byte 4 for the end of input, and text with zero bytes for UTF-16: such text is refused before it starts;
 //   - it queues every token of a bracketed collection before it reports the first, since the whole might be a key. The
 //     stream that feeds it counts brackets and commas since the last event and ends the input early when there are too many;
+//   - it takes the end of the file for the end of a quoted text;
 //   - it drops the tag of an empty value: tags and anchors are recognised by the character at the reported place.
 #include "compiler/yaml.h"
 
@@ -25,19 +26,21 @@ class Feed final : public std::streambuf {
 public:
     explicit Feed(std::string_view text) : rest_(text) {}
     void event() { items_ = 0, open_ = 0; }
-    bool stopped() const { return stopped_; }
-    bool too_deep() const { return open_ > open_limit; }
+    bool stopped() const { return too_deep_ || too_long_; }
+    bool too_deep() const { return too_deep_; }
+    void stop() { too_long_ = true; }
 
 protected:
     std::streamsize xsgetn(char* to, std::streamsize wanted) override {
-        if (stopped_) return 0;
+        if (stopped()) return 0;
         const size_t n = std::min(rest_.size(), static_cast<size_t>(wanted));
         for (const char c : rest_.substr(0, n)) {
             if (c == ',' || c == '[' || c == '{' || c == ':') ++items_;
             if (c == '[' || c == '{') ++open_;
             if ((c == ']' || c == '}') && open_ > 0) --open_;
         }
-        stopped_ = items_ > Yaml::flow_limit || open_ > open_limit;
+        too_deep_ = open_ > open_limit;
+        too_long_ = items_ > Yaml::flow_limit;
         std::memcpy(to, rest_.data(), n);
         rest_.remove_prefix(n);
         return static_cast<std::streamsize>(n);
@@ -47,11 +50,59 @@ private:
     static constexpr size_t open_limit = 4096;
     std::string_view rest_;
     size_t items_ = 0, open_ = 0;
-    bool stopped_ = false;
+    bool too_deep_ = false, too_long_ = false;
 };
 
 constexpr const char* quote_hint =
     "quote the expression: a value that begins with '!', '&', '*', '{' or '[' means something else to YAML";
+
+// The library's messages in terms of what to change.
+std::string plain_words(const std::string& message) {
+    static constexpr std::pair<const char*, const char*> table[] = {
+        {YAML::ErrorMsg::END_OF_MAP, "expected a key here: check the indentation, or quote text that goes on over lines"},
+        {YAML::ErrorMsg::END_OF_MAP_FLOW, "expected ',' or '}' here; text that holds braces, brackets or commas needs quotes"},
+        {YAML::ErrorMsg::END_OF_SEQ, "expected '- ' here: check the indentation"},
+        {YAML::ErrorMsg::END_OF_SEQ_FLOW, "expected ',' or ']' here; text that holds braces, brackets or commas needs quotes"},
+        {YAML::ErrorMsg::FLOW_END, "this bracket closes nothing; text that holds braces or brackets needs quotes"},
+        {YAML::ErrorMsg::MAP_VALUE, "a ':' cannot stand here; text that holds ': ' needs quotes"},
+        {YAML::ErrorMsg::MAP_KEY, "a key cannot stand here: check the indentation"},
+        {YAML::ErrorMsg::BLOCK_ENTRY, "'- ' cannot stand here: check the indentation"},
+        {YAML::ErrorMsg::UNKNOWN_TOKEN, "text cannot begin with this character: it needs quotes"},
+        {YAML::ErrorMsg::EOF_IN_SCALAR, "the file ends inside this text"},
+    };
+    for (const auto& [theirs, ours] : table)
+        if (message == theirs) return ours;
+    std::string out = message;
+    for (char& c : out)
+        if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+    return out;
+}
+
+// Of the first line with content: where a directive ('%YAML', '%TAG') begins, or npos.
+size_t find_directive(std::string_view text) {
+    for (size_t at = 0; at < text.size();) {
+        const size_t first = text.find_first_not_of(" \t\r\n", at);
+        if (first == std::string_view::npos) break;
+        if (text[first] == '%') return first;
+        if (text[first] != '#') break;
+        at = std::min(text.find('\n', first), text.size());
+    }
+    return std::string_view::npos;
+}
+
+// Past the quoted scalar that begins at `offset`, or npos when it does not end.
+size_t end_of_quoted(std::string_view text, size_t offset) {
+    const char quote = text[offset];
+    for (size_t at = offset + 1; at < text.size(); ++at) {
+        if (quote == '"' && text[at] == '\\')
+            ++at;
+        else if (quote == '\'' && text[at] == quote && at + 1 < text.size() && text[at + 1] == quote)
+            ++at;
+        else if (text[at] == quote)
+            return at + 1;
+    }
+    return std::string_view::npos;
+}
 
 // The offset of the first byte that may not be in a manifest, and why.
 struct Unfit {
@@ -89,7 +140,11 @@ public:
     YamlBuilder(Yaml& yaml, Feed& feed, Diags& diags) : yaml_(yaml), feed_(feed), errors_(yaml, diags) {}
 
     void OnDocumentStart(const YAML::Mark& mark) override {
-        if (++documents_ == 2) reject(offset_of(mark), "a second document: a file holds one");
+        if (++documents_ != 2) return;
+        const size_t offset = offset_of(mark);
+        const bool marked = yaml_.text_.compare(offset, 3, "---") == 0;
+        reject(offset, marked ? "a second document: a file holds one"
+                              : "this does not belong to what is above it: check the indentation; a file holds one document");
     }
     void OnDocumentEnd() override {}
     void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { add(mark, YamlKind::null, nullptr); }
@@ -124,7 +179,7 @@ private:
         return mark.pos < 0 ? yaml_.text_.size() : std::min(static_cast<size_t>(mark.pos), yaml_.text_.size());
     }
     char at(size_t offset) const { return offset < yaml_.text_.size() ? yaml_.text_[offset] : '\0'; }
-    bool skipping() const { return documents_ > 1 || depth_ > Yaml::depth_limit; }
+    bool skipping() const { return documents_ > 1 || depth_ > Yaml::depth_limit || feed_.stopped(); }
     Yaml::Node add(const YAML::Mark& mark, YamlKind kind, const std::string* value);
     void open(const YAML::Mark& mark, YamlKind kind);
     void close();
@@ -137,6 +192,7 @@ private:
     YamlErrors errors_;
     std::vector<Open> stack_;
     size_t depth_ = 0;
+    size_t last_offset_ = 0;  // of the last event
     int documents_ = 0;
 };
 
@@ -165,6 +221,7 @@ Yaml::Node YamlBuilder::add(const YAML::Mark& mark, YamlKind kind, const std::st
     feed_.event();
     if (skipping()) return 0;
     size_t offset = offset_of(mark);
+    last_offset_ = offset;
     property(offset);
     Yaml::Entry entry;
     entry.kind = kind;
@@ -182,6 +239,7 @@ Yaml::Node YamlBuilder::add(const YAML::Mark& mark, YamlKind kind, const std::st
         entry.size = static_cast<uint32_t>(value->size());
         const bool quoted = entry.style == YamlStyle::single_quoted || entry.style == YamlStyle::double_quoted;
         const size_t begin = offset + (quoted ? 1 : 0);
+        if (quoted && end_of_quoted(yaml_.text_, offset) == std::string_view::npos) reject(offset, "this quote is not closed");
         if (entry.style != YamlStyle::block && yaml_.text_.compare(begin, value->size(), *value) == 0) {
             entry.begin = static_cast<uint32_t>(begin);
         } else {
@@ -191,6 +249,11 @@ Yaml::Node YamlBuilder::add(const YAML::Mark& mark, YamlKind kind, const std::st
         }
     }
     const Yaml::Node node = static_cast<Yaml::Node>(yaml_.nodes_.size());
+    if (node == Yaml::node_limit) {
+        reject(offset, "more than " + std::to_string(Yaml::node_limit) + " keys, values and collections");
+        feed_.stop();
+        return 0;
+    }
     yaml_.nodes_.push_back(entry);
     if (!stack_.empty()) {
         Open& parent = stack_.back();
@@ -240,12 +303,13 @@ void YamlBuilder::check_keys(Yaml::Node map) {
 }
 
 void YamlBuilder::failed(size_t offset, const std::string& message) {
-    if (feed_.stopped()) {
-        const bool deep = feed_.too_deep();
-        return reject(offset, deep ? "nested deeper than " + std::to_string(Yaml::depth_limit) + " levels"
-                                   : "one bracketed collection may have at most " + std::to_string(Yaml::flow_limit) +
-                                         " items: write the outer levels as indented lines");
-    }
+    if (yaml_.nodes_.size() == Yaml::node_limit) return;  // already said
+    if (feed_.stopped())
+        return reject(last_offset_, feed_.too_deep()
+                                        ? "what follows is nested deeper than " + std::to_string(Yaml::depth_limit) + " levels"
+                                        : "the bracketed collection that follows has more than " +
+                                              std::to_string(Yaml::flow_limit) +
+                                              " items: write its outer levels as indented lines");
     if (depth_ > Yaml::depth_limit) return;  // already said
     if (property(offset)) return;
     const Place place = yaml_.place_at(offset);
@@ -254,7 +318,7 @@ void YamlBuilder::failed(size_t offset, const std::string& message) {
     const size_t first = line.find_first_not_of(" ");
     if (first != std::string::npos && line[first] == '\t') notes.push_back("a tab cannot indent: use spaces");
     if (line.find("forbid:") != std::string::npos || line.find("require:") != std::string::npos) notes.push_back(quote_hint);
-    reject(offset, "not YAML: " + message, std::move(notes));
+    reject(offset, "not YAML: " + plain_words(message), std::move(notes));
 }
 
 std::optional<Yaml> Yaml::parse(std::string path, std::string text, Diags& diags) {
@@ -268,6 +332,10 @@ std::optional<Yaml> Yaml::parse(std::string path, std::string text, Diags& diags
     YamlBuilder builder(yaml, feed, diags);
     if (const Unfit unfit = find_unfit(yaml.text_); unfit.why != nullptr) {
         builder.reject(unfit.offset, unfit.why);
+        return std::nullopt;
+    }
+    if (const size_t at = find_directive(yaml.text_); at != std::string_view::npos) {
+        builder.reject(at, "'%' begins a YAML directive, which a manifest does not use");
         return std::nullopt;
     }
     try {

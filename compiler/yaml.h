@@ -3,7 +3,8 @@
 // unlike scalar keys, sequences, scalars. Tags, anchors, aliases, merge keys, directives, further documents, control
 // characters and text that is not UTF-8 are errors. A BOM and CRLF line ends are accepted and do not move columns.
 //
-// Limits: 64 MiB of text, 64 levels, and one bracketed collection ([...] or {...}) of at most `flow_limit` items in all.
+// Limits: 64 MiB of text, 64 levels, `node_limit` keys, values and collections, and `flow_limit` items in one bracketed
+// collection ([...] or {...}) with all that it holds.
 
 #include <cstdint>
 #include <optional>
@@ -18,11 +19,16 @@ namespace kiln {
 enum class YamlKind : uint8_t { null, scalar, sequence, map };
 enum class YamlStyle : uint8_t { plain, single_quoted, double_quoted, block };
 
+struct YamlSpot {
+    uint32_t line = 0, column = 0;
+};
+
 class Yaml {
 public:
     static constexpr size_t size_limit = size_t{64} << 20;
     static constexpr size_t depth_limit = 64;
-    static constexpr size_t flow_limit = size_t{1} << 20;
+    static constexpr size_t node_limit = size_t{6} << 20;
+    static constexpr size_t flow_limit = size_t{1} << 21;
 
     using Node = uint32_t;  // index; the root is 0
     struct Pair {
@@ -41,6 +47,7 @@ public:
     std::vector<Node> items(Node sequence) const;
     std::vector<Pair> pairs(Node map) const;
 
+    YamlSpot spot(Node n) const { return spot_at(nodes_[n].offset); }
     Place place(Node n) const { return place_at(nodes_[n].offset); }
     // Of byte `value_offset` of a scalar's value, wherever quoting, escapes and folding have put it in the file.
     Place place_in(Node n, size_t value_offset) const;
@@ -61,13 +68,17 @@ private:
     };
 
     Yaml(std::string path, std::string text);
+    YamlSpot spot_at(size_t offset) const;
     Place place_at(size_t offset) const;
 
     std::string path_;
     std::string text_;     // without its BOM
     std::string decoded_;  // values that are not verbatim in text_
     std::vector<Entry> nodes_;
-    std::vector<uint32_t> line_marks_;  // line number at every 16 KiB of text
+    struct Mark {
+        uint32_t line, line_begin;  // the line's number, and the offset where it begins
+    };
+    std::vector<Mark> marks_;  // at every so many bytes of text
 };
 
 // Collects a file's mistakes with source lines; after `limit` of them it says once that there are more.

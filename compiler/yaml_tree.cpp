@@ -1,5 +1,5 @@
 // Places are byte offsets until somebody asks: a tree of a million values keeps one offset each, and lines are counted from
-// the nearest of a few thousand marks.
+// the nearest of many marks.
 #include <algorithm>
 
 #include "compiler/yaml.h"
@@ -7,18 +7,17 @@
 namespace kiln {
 
 namespace {
-constexpr size_t mark_distance = 16 * 1024;
+constexpr size_t mark_distance = 512;
 constexpr size_t longest_line = 4096;  // a caret further right than this is not shown
 constexpr size_t behind_caret = 256;
 }  // namespace
 
 Yaml::Yaml(std::string path, std::string text) : path_(std::move(path)), text_(std::move(text)) {
-    uint32_t line = 1;
-    for (size_t at = 0; at <= text_.size(); at += mark_distance) {
-        line_marks_.push_back(line);
-        const size_t end = std::min(at + mark_distance, text_.size());
-        line += static_cast<uint32_t>(
-            std::count(text_.begin() + static_cast<ptrdiff_t>(at), text_.begin() + static_cast<ptrdiff_t>(end), '\n'));
+    Mark mark{1, 0};
+    marks_.reserve(text_.size() / mark_distance + 1);
+    for (size_t at = 0; at <= text_.size(); ++at) {
+        if (at % mark_distance == 0) marks_.push_back(mark);
+        if (at < text_.size() && text_[at] == '\n') ++mark.line, mark.line_begin = static_cast<uint32_t>(at + 1);
     }
 }
 
@@ -44,14 +43,17 @@ std::vector<Yaml::Pair> Yaml::pairs(Node map) const {
     return out;
 }
 
-Place Yaml::place_at(size_t offset) const {
+YamlSpot Yaml::spot_at(size_t offset) const {
     offset = std::min(offset, text_.size());
-    const size_t mark = offset / mark_distance;
-    const auto from = text_.begin() + static_cast<ptrdiff_t>(mark * mark_distance);
-    const auto here = text_.begin() + static_cast<ptrdiff_t>(offset);
-    const size_t line_begin = offset == 0 ? 0 : text_.rfind('\n', offset - 1) + 1;  // npos + 1 == 0
-    return {path_, line_marks_[mark] + static_cast<uint32_t>(std::count(from, here, '\n')),
-            static_cast<uint32_t>(offset - line_begin + 1)};
+    Mark mark = marks_[offset / mark_distance];
+    for (size_t at = offset - offset % mark_distance; at < offset; ++at)
+        if (text_[at] == '\n') ++mark.line, mark.line_begin = static_cast<uint32_t>(at + 1);
+    return {mark.line, static_cast<uint32_t>(offset - mark.line_begin + 1)};
+}
+
+Place Yaml::place_at(size_t offset) const {
+    const YamlSpot spot = spot_at(offset);
+    return {path_, spot.line, spot.column};
 }
 
 Place Yaml::place_in(Node n, size_t value_offset) const {
@@ -64,15 +66,15 @@ Place Yaml::place_in(Node n, size_t value_offset) const {
 
 std::string Yaml::source_line(const Place& place) const {
     if (place.line == 0 || place.column > longest_line) return {};
-    const auto mark = std::upper_bound(line_marks_.begin(), line_marks_.end(), place.line - 1);
-    // The last mark whose line is before the wanted one; the wanted line begins after it, unless it is the first.
-    size_t at = mark == line_marks_.begin() ? 0 : static_cast<size_t>(mark - line_marks_.begin() - 1) * mark_distance;
-    uint32_t line = mark == line_marks_.begin() ? 1 : *(mark - 1);
-    while (line < place.line) {
+    // The last mark at or before the end of the line before the wanted one.
+    const auto mark =
+        std::lower_bound(marks_.begin(), marks_.end(), place.line, [](const Mark& m, uint32_t l) { return m.line < l; });
+    Mark from = mark == marks_.begin() ? Mark{1, 0} : *(mark - 1);
+    size_t at = from.line_begin;
+    for (; from.line < place.line; ++from.line) {
         at = text_.find('\n', at);
         if (at == std::string::npos) return {};
         ++at;
-        ++line;
     }
     std::string_view rest = std::string_view(text_).substr(at);
     rest = rest.substr(0, std::min(rest.find('\n'), place.column + behind_caret));
