@@ -48,7 +48,8 @@ public:
     Set project(Set s, const std::vector<bool>& keep);   // for some digits of the axes not kept
     // A set that agrees with `s` on `care` and is free outside, chosen to ask less; `care` must not be empty.
     Set simplify(Set s, Set care);
-    std::vector<uint32_t> support(Set s) const;  // axes it depends on, ascending
+    std::vector<uint32_t> support(Set s) const;               // axes it depends on, ascending
+    std::vector<std::vector<bool>> digits_used(Set s) const;  // per axis, the digits that some member has
 
     Count count(Set s);                                       // members, over all axes
     std::vector<Count> count_by_digit(Set s, uint32_t axis);  // one per digit

@@ -195,6 +195,33 @@ std::vector<uint32_t> Diagram::support(Set s) const {
     return axes;
 }
 
+std::vector<std::vector<bool>> Diagram::digits_used(Set s) const {
+    const Body& b = *body_;
+    std::vector<std::vector<bool>> used;
+    for (const uint32_t radix : b.radices) used.emplace_back(radix, false);
+    if (s == none()) return used;
+    // An edge that skips levels leaves all their digits open.
+    std::vector<bool> open(b.levels() + 1, false);
+    const auto skip = [&](uint32_t from, uint32_t to) {
+        for (uint32_t level = from; level < to; ++level) open[level] = true;
+    };
+    skip(0, b.nodes[s.node].level);
+    for (const Set n : reachable({&s, 1})) {
+        const Body::Node& node = b.nodes[n.node];
+        uint32_t digit = 0;
+        for (const Edge& e : node) {
+            if (e.child != none()) {
+                skip(node.level + 1u, b.nodes[e.child.node].level);
+                for (; digit <= e.last; ++digit) used[b.order[node.level]][digit] = true;
+            }
+            digit = e.last + 1;
+        }
+    }
+    for (uint32_t level = 0; level < b.levels(); ++level)
+        if (open[level]) used[b.order[level]].assign(b.width[level], true);
+    return used;
+}
+
 Set Diagram::branch(uint32_t axis, std::span<const Edge> runs) {
     Body& b = *body_;
     const uint32_t level = b.level_of[axis];
