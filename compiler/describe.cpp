@@ -2,8 +2,8 @@
 // answer does not need (the projections of the set and of its complement within `care` stay apart). Then one conjunction:
 // per axis the values that must be allowed and those that may be are known, and the shortest term between them is taken.
 // Where that fails, a cover by up to four terms in several conjunctions is searched, growing a box around one member at a
-// time; and last, a comparison of two axes may be split off. All of it happens in a scratch diagram of bounded size, and
-// what is returned has been compared with the set.
+// time; and last, a first term (a comparison of two axes, say) is split off that all members share. All of it happens in a
+// scratch diagram of bounded size, and what is returned has been compared with the set.
 
 #include "compiler/describe.h"
 
@@ -23,9 +23,23 @@ constexpr unsigned most_boxes = 4'000;
 struct Condition {
     std::string text;
     unsigned terms = 0;
-    bool alternatives = false;  // joined by ||
     Set set;
+    // Conjunctions joined by ||, each with the axes it names; ordered by these. One for a plain conjunction.
+    std::vector<std::pair<std::vector<uint32_t>, std::string>> parts;
 };
+
+Condition joined(const Condition& a, const Condition& b) {
+    Condition out;
+    out.terms = a.terms + b.terms;
+    out.parts = a.parts;
+    out.parts.insert(out.parts.end(), b.parts.begin(), b.parts.end());
+    std::sort(out.parts.begin(), out.parts.end());
+    for (const auto& [axes, text] : out.parts) {
+        const bool several = text.find(" && ") != std::string::npos;
+        out.text += (out.text.empty() ? "" : " || ") + (several ? "(" + text + ")" : text);
+    }
+    return out;
+}
 
 bool shorter(const Condition& a, const Condition& b) {
     return a.terms != b.terms ? a.terms < b.terms : a.text.size() < b.text.size();
@@ -45,7 +59,7 @@ public:
         }
         if (!best || best->terms > 2)
             for (const std::vector<uint32_t>& axes : small_supports(set, off, care))
-                if (auto found = with_comparison(set, care, axes, budget))
+                if (auto found = with_first_term(set, care, axes, budget))
                     if (!best || shorter(*found, *best)) best = std::move(found);
         if (d_.exhausted() || !best || d_.both(best->set, care) != set || d_.exhausted()) return std::nullopt;
         return best;
@@ -125,7 +139,12 @@ private:
             if (term->cost != 0) texts.push_back({box.axes[i], term->text});
         }
         std::sort(texts.begin(), texts.end());
-        for (const auto& [axis, text] : texts) out.text += (out.text.empty() ? "" : " && ") + text;
+        out.parts.resize(1);
+        for (const auto& [axis, text] : texts) {
+            out.text += (out.text.empty() ? "" : " && ") + text;
+            out.parts[0].first.push_back(axis);
+        }
+        out.parts[0].second = out.text;
         out.set = set_of(box);
         return out;
     }
@@ -167,15 +186,9 @@ private:
                     if (head->terms >= budget) continue;
                     const auto tail = alternatives(rest, off, axes, budget - head->terms);
                     if (!tail) continue;
-                    const auto enclosed = [](const Condition& c, unsigned terms) {
-                        return terms > 1 && !c.alternatives ? "(" + c.text + ")" : c.text;
-                    };
-                    Condition joined;
-                    joined.text = enclosed(*head, head->terms) + " || " + enclosed(*tail, tail->terms);
-                    joined.terms = head->terms + tail->terms;
-                    joined.alternatives = true;
-                    joined.set = d_.either(head->set, tail->set);
-                    return joined;
+                    Condition both = joined(*head, *tail);
+                    both.set = d_.either(head->set, tail->set);
+                    return both;
                 }
             }
         }
@@ -217,28 +230,32 @@ private:
         return d_.branch(upper, runs);
     }
 
-    // `a == b && ...` for two of the axes that decide, the rest being found as before.
-    std::optional<Condition> with_comparison(Set set, Set care, const std::vector<uint32_t>& axes, unsigned budget) {
-        constexpr size_t most_values = 256;  // the comparison is built value by value
+    // `a == b && ...` or `light != none && (...)`: a first term that holds on all of the set, and what is left to say inside it.
+    std::optional<Condition> with_first_term(Set set, Set care, const std::vector<uint32_t>& axes, unsigned budget) {
+        constexpr size_t most_values = 256;  // a comparison is built value by value
         if (axes.size() > 2 * budget || budget == 0) return std::nullopt;
         std::optional<Condition> best;
+        const auto attempt = [&](Condition first) {
+            const Set narrower = d_.both(care, first.set);
+            if (narrower == care || first.terms > budget || d_.exhausted()) return;
+            if (narrower != set) {
+                const auto rest = find(set, narrower, budget - first.terms);
+                if (!rest) return;
+                first.text += " && " + (rest->parts.size() > 1 ? "(" + rest->text + ")" : rest->text);
+                first.terms += rest->terms;
+                first.set = d_.both(first.set, rest->set);
+            }
+            if (!best || shorter(first, *best)) best = std::move(first);
+        };
         for (const uint32_t a : axes) {
+            const Flags must = digits_of(set, a);
+            if (const auto term = shortest_term(axes_[a], must, must); term && term->cost != 0)
+                attempt({term->text, term->cost, d_.where(a, term->digits), {}});
             for (const uint32_t b : axes) {
                 if (b <= a || axes_[a].values.size() > most_values || axes_[b].values.size() > most_values) continue;
                 for (const char* op : {"==", "!=", "<", ">"}) {
                     const Set both = compared(a, b, op);
-                    if (!d_.subset(set, both)) continue;
-                    const Set narrower = d_.both(care, both);
-                    if (narrower == care || d_.exhausted()) continue;
-                    Condition here{axes_[a].name + " " + op + " " + axes_[b].name, 1, false, both};
-                    if (narrower != set) {
-                        const auto rest = find(set, narrower, budget - 1);
-                        if (!rest) continue;
-                        here.text += " && " + (rest->alternatives ? "(" + rest->text + ")" : rest->text);
-                        here.terms += rest->terms;
-                        here.set = d_.both(both, rest->set);
-                    }
-                    if (!best || shorter(here, *best)) best = std::move(here);
+                    if (d_.subset(set, both)) attempt({axes_[a].name + " " + op + " " + axes_[b].name, 1, both, {}});
                 }
             }
         }
