@@ -13,6 +13,7 @@
 #include "compiler/base/digest.h"
 #include "compiler/base/result.h"
 #include "compiler/table.h"
+#include "compiler/table_read.h"
 
 namespace kiln {
 
@@ -58,6 +59,6 @@ struct ProofMismatch {
 
 // Compares exactly, by sets: for every stage, the set of needed variants that the table resolves to each module against the
 // union of the proof's classes of that module; every module's words and every artifact's text against their digests.
-std::vector<ProofMismatch> check_proof(ByteView table, Proof& proof);
+std::vector<ProofMismatch> check_proof(TableView& table, Proof& proof);
 
 }  // namespace kiln

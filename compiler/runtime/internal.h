@@ -3,6 +3,7 @@
 /* Bounds-checked access to the sections of an open table, shared by the reader's sources. */
 #include <string.h>
 
+#include "compiler/runtime/inspect.h"
 #include "compiler/runtime/kiln.h"
 #include "compiler/runtime/table_format.h"
 

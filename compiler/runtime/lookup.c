@@ -224,3 +224,16 @@ kiln_status kiln_find_stage(const kiln_shader* s, const uint64_t* key, uint32_t 
     *module = kiln_u32(s->private_.modules + (size_t)4 * leaf);
     return KILN_OK;
 }
+
+int kiln_shader_rule_diagram(const kiln_shader* s, uint32_t rule, kiln_diagram* out) {
+    kf_rule_record r;
+    return rule < s->rule_count && KILN_LOAD(s->table, kf_rules, (uint64_t)s->private_.rules + rule, &r) &&
+           kiln_diagram_at(s->table, r.diagram, out);
+}
+
+const uint32_t* kiln_shader_order(const kiln_shader* s, uint32_t* count) {
+    kf_shader_record r;
+    if (!KILN_LOAD(s->table, kf_shaders, s->index, &r)) return NULL;
+    *count = r.order.count;
+    return (const uint32_t*)(const void*)kiln_run(s->table, kf_numbers, r.order.first, r.order.count);
+}
