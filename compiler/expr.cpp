@@ -6,6 +6,7 @@
 #include <cassert>
 #include <charconv>
 #include <optional>
+#include <unordered_map>
 
 namespace kiln {
 
@@ -110,6 +111,27 @@ private:
 
     std::string_view text_;
     size_t at_ = 0;
+};
+
+// Finds things by name. Looks through short lists, and through any for the first few questions, since most expressions ask few.
+class NameIndex {
+public:
+    template <class Named>
+    std::optional<uint32_t> find(const std::vector<Named>& list, std::string_view name) {
+        if (list.size() <= 16 || ++asked_ <= 64) {
+            for (uint32_t i = 0; i < list.size(); ++i)
+                if (list[i].name == name) return i;
+            return std::nullopt;
+        }
+        if (index_.empty())
+            for (uint32_t i = 0; i < list.size(); ++i) index_.emplace(list[i].name, i);
+        const auto found = index_.find(name);
+        return found == index_.end() ? std::nullopt : std::optional(found->second);
+    }
+
+private:
+    std::unordered_map<std::string_view, uint32_t> index_;
+    unsigned asked_ = 0;
 };
 
 // What stands on the operand stack: a node, or a name that no operator has claimed yet.
@@ -335,20 +357,16 @@ private:
     }
     uint32_t literal(int32_t number, uint32_t offset) { return node({Op::literal, number, 0, {}, offset}); }
 
-    std::optional<uint32_t> axis_named(std::string_view name) const {
-        for (uint32_t i = 0; i < axes_.size(); ++i)
-            if (axes_[i].name == name) return i;
-        return std::nullopt;
-    }
-    std::optional<uint32_t> axis_of(const Operand& o) const {
+    std::optional<uint32_t> axis_named(std::string_view name) { return axis_names_.find(axes_, name); }
+    std::optional<uint32_t> axis_of(const Operand& o) {
         if (!o.node) return axis_named(o.name);
         const ExprNode& n = expr_.nodes[*o.node];
         return n.op == Op::axis ? std::optional(n.axis) : std::nullopt;
     }
-    std::optional<int32_t> value_of(uint32_t axis, std::string_view name) const {
-        for (const AxisValue& v : axes_[axis].values)
-            if (v.name == name) return v.number;
-        return std::nullopt;
+    std::optional<int32_t> value_of(uint32_t axis, std::string_view name) {
+        const std::vector<AxisValue>& values = axes_[axis].values;
+        const std::optional<uint32_t> digit = value_names_[axis].find(values, name);
+        return digit ? std::optional(values[*digit].number) : std::nullopt;
     }
 
     std::string no_value(uint32_t axis, std::string_view name) const {
@@ -392,6 +410,8 @@ private:
     std::vector<Pending> pending_;
     unsigned level_ = 0;
     std::optional<ExprError> error_;
+    NameIndex axis_names_;
+    std::unordered_map<uint32_t, NameIndex> value_names_;
 };
 
 }  // namespace

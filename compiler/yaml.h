@@ -92,6 +92,7 @@ public:
     }
     bool any() const { return count_ != 0; }
     size_t count() const { return count_; }
+    bool full() const { return count_ > limit; }  // what is reported from here on is not shown
 
 private:
     const Yaml& yaml_;

@@ -13,6 +13,7 @@ Fields::Fields(const Yaml& yaml, YamlErrors& errors, Yaml::Node node, std::strin
     pairs_ = yaml.pairs(node);
     const std::vector<std::string> names(known.begin(), known.end());
     for (const Yaml::Pair& pair : pairs_) {
+        if (errors_.full()) break;
         const std::string_view key = yaml.value(pair.key);
         bool found = false;
         for (const std::string& name : names) found = found || name == key;
