@@ -169,7 +169,7 @@ public:
 
     std::variant<Expr, ExprError> run() {
         if (text_.size() > expr_size_limit)
-            return ExprError{0, "an expression may have at most " + std::to_string(expr_size_limit) + " bytes"};
+            return ExprError{0, "an expression may have at most " + std::to_string(expr_size_limit) + " bytes", std::nullopt};
         token_ = lexer_.next();
         bool want_operand = true;
         for (;;) {
@@ -199,7 +199,7 @@ public:
 
 private:
     void fail(uint32_t offset, std::string message) {
-        if (!error_) error_ = ExprError{offset, std::move(message)};
+        if (!error_) error_ = ExprError{offset, std::move(message), std::nullopt};
     }
     void advance() { token_ = lexer_.next(); }
     bool after_comparison() const { return !pending_.empty() && strength(pending_.back()) == 5; }
@@ -299,7 +299,7 @@ private:
                     return fail(token_.offset, "'" + std::string(token_.text) + "': only an axis has named values");
                 const uint32_t axis = expr_.nodes[*left.node].axis;
                 const std::optional<int32_t> number = value_of(axis, token_.text);
-                if (!number) return fail(token_.offset, no_value(axis, token_.text));
+                if (!number) return no_value(token_.offset, axis, token_.text);
                 args.push_back(literal(*number, token_.offset));
             } else if (token_.kind == Kind::close_brace) {
                 return fail(token_.offset,
@@ -369,10 +369,11 @@ private:
         return digit ? std::optional(values[*digit].number) : std::nullopt;
     }
 
-    std::string no_value(uint32_t axis, std::string_view name) const {
+    void no_value(uint32_t offset, uint32_t axis, std::string_view name) {
         std::vector<std::string> names;
         for (const AxisValue& v : axes_[axis].values) names.push_back(v.name);
-        return "'" + std::string(name) + "' is not a value of axis '" + axes_[axis].name + "'" + did_you_mean(name, names);
+        fail(offset, "'" + std::string(name) + "' is not a value of axis '" + axes_[axis].name + "'" + did_you_mean(name, names));
+        error_->axis = axis;
     }
 
     // Settles the names beside a comparison: first as a value of the other side's axis, then as an axis.
@@ -381,10 +382,10 @@ private:
         if (!right.node && left_axis) {
             if (const auto number = value_of(*left_axis, right.name)) right.node = literal(*number, right.offset);
         }
-        if (!right.node && !right_axis && left_axis) return fail(right.offset, no_value(*left_axis, right.name));
+        if (!right.node && !right_axis && left_axis) return no_value(right.offset, *left_axis, right.name);
         if (!left.node && right_axis && !is_literal(right)) {
             if (const auto number = value_of(*right_axis, left.name)) left.node = literal(*number, left.offset);
-            if (!left.node && !left_axis) return fail(left.offset, no_value(*right_axis, left.name));
+            if (!left.node && !left_axis) return no_value(left.offset, *right_axis, left.name);
         }
     }
     bool is_literal(const Operand& o) const { return o.node && expr_.nodes[*o.node].op == Op::literal; }

@@ -3,6 +3,7 @@
 // that neither walking nor destroying a long expression recurses.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -44,7 +45,8 @@ struct Expr {
 // Where a parse failed: byte offset into the text.
 struct ExprError {
     uint32_t offset = 0;
-    std::string message;  // with the nearest right name where a name is unknown
+    std::string message;           // with the nearest right name where a name is unknown
+    std::optional<uint32_t> axis;  // of a name that is not one of this axis's values
 };
 
 inline constexpr size_t expr_size_limit = 64 * 1024;  // bytes

@@ -56,6 +56,13 @@ std::string stage_clash(const std::vector<StageFile>& stages) {
     return {};
 }
 
+// The first axis of an expression that a shader does not have.
+std::optional<uint32_t> missing_axis(const Expr& expr, const Shader& shader) {
+    for (const uint32_t axis : expr.axes)
+        if (!std::binary_search(shader.axes.begin(), shader.axes.end(), axis)) return axis;
+    return std::nullopt;
+}
+
 class Reader {
 public:
     Reader(const Yaml& yaml, YamlErrors& errors, Manifest& out) : in_{yaml, errors}, yaml_(yaml), errors_(errors), out_(out) {}
@@ -77,7 +84,7 @@ public:
             out_.axes = read_axes(in_, f->value);
             axes_sound_ = before == errors_.count();
         }
-        if (const auto* f = top.find("rules")) rules_ = read_rules(in_, f->value, out_.axes);
+        if (const auto* f = top.find("rules")) rules_ = read_rules(in_, f->value, out_.axes, nullptr);
         if (const auto* f = top.need("shaders")) shaders(f->value);
     }
 
@@ -135,7 +142,7 @@ private:
         if (const auto* f = fields.find("defines")) defines(f->value, out);
         out.options = out_.options;
         if (const auto* f = fields.find("options")) out.options = read_options(in_, f->value, options_).options;
-        if (const auto* f = fields.find("rules")) shader_rules(f->value, out);
+        if (const auto* f = fields.find("rules")) out.rules = read_rules(in_, f->value, out_.axes, &out);
         return out;
     }
 
@@ -160,6 +167,7 @@ private:
             for (uint32_t i = 0; i < out_.axes.size(); ++i) out.axes.push_back(i);
             return;
         }
+        const size_t before = errors_.count();
         std::unordered_map<uint32_t, Yaml::Node> seen;
         for (const Yaml::Node item : read_list(yaml_, errors_, field->value, "a shader's axes")) {
             const auto name = read_text(yaml_, errors_, item, "an axis");
@@ -178,6 +186,7 @@ private:
                 errors_.at(item, "duplicate axis " + quoted(*name), {"first at " + to_string(yaml_.place(first->second))});
         }
         std::sort(out.axes.begin(), out.axes.end());
+        axes_sound_ = axes_sound_ && before == errors_.count();
     }
 
     std::optional<uint32_t> axis_named(std::string_view name) const {
@@ -210,24 +219,6 @@ private:
                 errors_.at(pair.value, "the body of a macro must be one line and may not end in '\\'");
             out.defines.emplace_back(std::string(macro), std::move(body));
         }
-    }
-
-    // The rules of one shader may only speak of its axes.
-    void shader_rules(Yaml::Node node, Shader& out) {
-        for (Rule& rule : read_rules(in_, node, out_.axes)) {
-            const std::optional<uint32_t> missing = missing_axis(rule.expr, out);
-            if (missing)
-                errors_.at(rule.place,
-                           "shader " + quoted(out.name) + " does not have the axis " + quoted(out_.axes[*missing].name));
-            else
-                out.rules.push_back(std::move(rule));
-        }
-    }
-
-    static std::optional<uint32_t> missing_axis(const Expr& expr, const Shader& shader) {
-        for (const uint32_t axis : expr.axes)
-            if (!std::binary_search(shader.axes.begin(), shader.axes.end(), axis)) return axis;
-        return std::nullopt;
     }
 
     // Gives each of the manifest's rules to the shaders that have all of its axes, before their own.
@@ -284,7 +275,7 @@ std::optional<std::string> read_plain_name(ManifestText in, Yaml::Node node, con
     return std::nullopt;
 }
 
-std::vector<Rule> read_rules(ManifestText in, Yaml::Node node, const std::vector<Axis>& axes) {
+std::vector<Rule> read_rules(ManifestText in, Yaml::Node node, const std::vector<Axis>& axes, const Shader* only) {
     std::vector<Rule> rules;
     for (const Yaml::Node item : read_list(in.yaml, in.errors, node, "rules")) {
         Fields fields(in.yaml, in.errors, item, "a rule", {"forbid", "require", "because"});
@@ -312,10 +303,18 @@ std::vector<Rule> read_rules(ManifestText in, Yaml::Node node, const std::vector
         rule.source_line = in.yaml.source_line(rule.place);
         auto parsed = parse_expr(rule.text, axes);
         if (const auto* error = std::get_if<ExprError>(&parsed)) {
+            if (error->axis && axes[*error->axis].values.empty()) continue;  // the axis itself is wrong, which was said
             in.errors.at(in.yaml.place_in(text, error->offset), error->message);
             continue;
         }
         rule.expr = std::get<Expr>(std::move(parsed));
+        if (const auto missing = only == nullptr ? std::nullopt : missing_axis(rule.expr, *only)) {
+            const auto use = std::find_if(rule.expr.nodes.begin(), rule.expr.nodes.end(),
+                                          [&](const ExprNode& n) { return n.op == Op::axis && n.axis == *missing; });
+            in.errors.at(in.yaml.place_in(text, use->offset),
+                         "shader " + quoted(only->name) + " does not have the axis " + quoted(axes[*missing].name));
+            continue;
+        }
         rules.push_back(std::move(rule));
     }
     return rules;

@@ -78,26 +78,23 @@ private:
     void list(Yaml::Node node) {
         if (!room(node)) return;
         std::optional<Yaml::Node> first_name, first_integer;
-        bool mixed = false;
         for (const Yaml::Node item : in_.yaml.items(node)) {
-            const ParsedInteger integer = parse_integer(in_.yaml.value(item));
             const bool digits = looks_integer(item);
-            if (digits && integer.problem == nullptr) {
-                add(item, std::to_string(integer.number), integer.number);
-            } else if (digits) {
-                in_.errors.at(item, quoted(in_.yaml.value(item)) + ": " + integer.problem);
-            } else if (const auto name = value_name(item)) {
-                add(item, *name, static_cast<int32_t>(axis_.values.size()));
-            } else {
-                continue;
-            }
             auto& first = digits ? first_integer : first_name;
-            if (!first) first = item;
-            if (first_name && first_integer && !mixed) {
-                mixed = true;
-                in_.errors.at(item, "names and integers do not mix in one list; number the names by hand: {none: 0, one: 1}",
-                              {"the list begins with " + quoted(in_.yaml.value(digits ? *first_name : *first_integer)) + " at " +
-                               to_string(in_.yaml.place(digits ? *first_name : *first_integer))});
+            const std::optional<Yaml::Node> other = digits ? first_name : first_integer;
+            if (other && !first)
+                in_.errors.at(
+                    item, "names and integers do not mix in one list; number the names by hand: {none: 0, one: 1}",
+                    {"the list begins with " + quoted(in_.yaml.value(*other)) + " at " + to_string(in_.yaml.place(*other))});
+            if (!first && in_.yaml.kind(item) == YamlKind::scalar) first = item;
+            const bool mixed = first_name && first_integer;
+            const ParsedInteger integer = parse_integer(in_.yaml.value(item));
+            if (digits && integer.problem != nullptr) {
+                in_.errors.at(item, quoted(in_.yaml.value(item)) + ": " + integer.problem);
+            } else if (digits) {
+                if (!mixed) add(item, std::to_string(integer.number), integer.number);
+            } else if (const auto name = value_name(item); name && !mixed) {
+                add(item, *name, static_cast<int32_t>(axis_.values.size()));
             }
         }
         axis_.kind = first_integer ? AxisKind::integer : AxisKind::named;

@@ -28,7 +28,7 @@ const char* macro_problem(std::string_view name);
 // A name of something that is not used inside expressions: [A-Za-z0-9_][A-Za-z0-9_.-]*.
 std::optional<std::string> read_plain_name(ManifestText in, Yaml::Node node, const std::string& what);
 
-// The rules of a list, over `axes`.
-std::vector<Rule> read_rules(ManifestText in, Yaml::Node node, const std::vector<Axis>& axes);
+// The rules of a list, over `axes`; with `only`, a rule on an axis that this shader does not have is an error.
+std::vector<Rule> read_rules(ManifestText in, Yaml::Node node, const std::vector<Axis>& axes, const Shader* only);
 
 }  // namespace kiln

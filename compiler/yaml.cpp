@@ -211,7 +211,7 @@ bool YamlBuilder::property(size_t offset) {
 bool YamlBuilder::spelt_null(size_t offset) const {
     for (const char* const word : {"~", "null", "Null", "NULL"}) {
         const size_t length = std::strlen(word);
-        if (yaml_.text_.compare(offset, length, word) == 0 && std::strchr(" \t\r\n,]}#", at(offset + length)) != nullptr)
+        if (yaml_.text_.compare(offset, length, word) == 0 && std::strchr(" \t\r\n,]}#:", at(offset + length)) != nullptr)
             return true;
     }
     return false;

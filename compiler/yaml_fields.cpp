@@ -69,7 +69,8 @@ std::optional<size_t> read_choice(const Yaml& yaml, YamlErrors& errors, Yaml::No
         if (names[i] == *text) return i;
     std::string all;
     for (size_t i = 0; i < names.size(); ++i) all += (i == 0 ? "" : ", ") + names[i];
-    errors.at(node, what + " cannot be " + quoted(*text) + did_you_mean(*text, names), {"one of: " + all});
+    errors.at(node, what + " cannot be " + quoted(*text) + did_you_mean(*text, names),
+              names.size() > 8 ? std::vector<std::string>{"one of: " + all} : std::vector<std::string>{});
     return std::nullopt;
 }
 
