@@ -1,5 +1,7 @@
-// The order of work follows its price. A class found in the store costs two reads. Else it is compiled and pruned, about 4 ms;
-// only what is distinct after pruning is optimised and validated, about 5 ms more; only what is distinct after that is reflected.
+// The order of work follows its price. A class found in the store costs two reads. Else it is compiled and pruned, about 2.5 ms;
+// only what is distinct after pruning is optimised and validated, about 3 ms more; only what is distinct after that is reflected.
+// An invalid pruned module stays invalid when optimised, so validating the final one is enough; the pruned one is only asked to
+// find out whose mistake it was.
 // Each step runs over a list in parallel and writes to its own slot; merging is by content (WordPool) and numbering by
 // the order of classes, so threads leave no trace.
 
@@ -65,9 +67,13 @@ public:
 
     Modules run() {
         collect();
-        bool complete = look_up() && compile();
-        if (complete && !failed_) complete = optimise() && !failed_ && gather() && !failed_ && remember();
-        report(complete);
+        for (bool (Builder::*const step)() :
+             {&Builder::look_up, &Builder::compile, &Builder::optimise, &Builder::gather, &Builder::remember}) {
+            if (failed_) break;  // with all of this step's errors collected
+            complete_ = (this->*step)();
+            if (!complete_) break;
+        }
+        report();
         return std::move(out_);
     }
 
@@ -220,20 +226,20 @@ private:
     }
 
     void optimise_one(Candidate& candidate) {
-        const auto complain = [&](const char* form, const std::vector<ToolMessage>& messages) {
-            for (const ToolMessage& m : messages) {
-                if (m.severity != Severity::error) continue;
-                candidate.messages.push_back(
-                    {Severity::error, 0, std::string("internal error: spirv-val on the ") + form + ": " + m.text});
-            }
-        };
-        complain("unoptimised module", tools_.validate(*candidate.pruned, candidate.options));
         Result<Words> final = tools_.optimise(*candidate.pruned, candidate.options);
         if (!final.ok()) {
             candidate.messages.push_back({Severity::error, 0, final.error().message});
             return;
         }
-        if (*final != *candidate.pruned) complain("optimised module", tools_.validate(*final, candidate.options));
+        candidate.messages = tools_.validate(*final, candidate.options);
+        std::erase_if(candidate.messages, [](const ToolMessage& m) { return m.severity != Severity::error; });
+        if (!candidate.messages.empty()) {
+            const char* culprit = has_error(tools_.validate(*candidate.pruned, candidate.options)) ? "glslang" : "SPIRV-Tools";
+            for (ToolMessage& m : candidate.messages) {
+                m.text = std::string("internal error: ") + culprit + " made an invalid module: " + m.text;
+            }
+            return;
+        }
         candidate.final_digest = digest_of(*final);
         candidate.final = pool_.keep(std::move(*final));
     }
@@ -304,19 +310,19 @@ private:
         });
     }
 
-    void report(bool complete) {
+    void report() {
         std::vector<ClassMessage> messages;
         for (const Unit& unit : units_) {
             for (const auto& [s, c] : unit.classes) {
                 for (const ToolMessage& m : unit.record.messages) messages.push_back({s, c, m});
             }
         }
-        out_.diags = blame(stages_, messages, lines_, !complete);
+        out_.diags = blame(stages_, messages, lines_, !complete_);
         if (out_.store_failures != 0) {
             out_.diags.warning(
                 {}, "the cache failed " + std::to_string(out_.store_failures) + " times and was done without: " + store_problem_);
         }
-        if (!complete || failed_) {
+        if (!complete_ || failed_) {
             out_.list.clear();
             out_.of_class.clear();
         }
@@ -336,7 +342,8 @@ private:
     WordPool pool_;
     std::mutex mutex_;  // store failures
     std::string store_problem_;
-    bool failed_ = false;
+    bool complete_ = true;  // false: interrupted
+    bool failed_ = false;   // some class has an error
     Modules out_;
 };
 
