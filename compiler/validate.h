@@ -50,8 +50,4 @@ Result<ValidateReport> validate(ByteView table, ByteView proof, const ValidateOp
 // A pool without processes: for tests, with a fake device.
 std::unique_ptr<WorkerPool> local_pool(std::unique_ptr<Device> device);
 
-// Which pipelines to draw so that every module is drawn once, then others by `seed` until there are `wanted`; ascending.
-// `pipelines[i]` holds the modules of pipeline i.
-std::vector<size_t> choose_sample(const std::vector<std::vector<uint32_t>>& pipelines, uint64_t wanted, uint64_t seed);
-
 }  // namespace kiln

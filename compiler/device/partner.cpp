@@ -54,6 +54,9 @@ std::string declaration(const Varying& v, const char* direction, size_t number, 
     return out + direction + " " + type_name(v.type) + " v" + std::to_string(number) + dimensions(v.type) + ";\n";
 }
 
+// 16-bit varyings need a feature that few devices have, and there are no 64-bit attachments.
+bool can_be_shown(const Varying& v) { return v.type.base != BaseType::float16 && v.type.base != BaseType::float64; }
+
 }  // namespace
 
 std::string vertex_partner(const std::vector<Varying>& inputs) {
@@ -95,20 +98,36 @@ std::string vertex_partner(const std::vector<Varying>& inputs) {
     return out + body + "}\n";
 }
 
+std::vector<Varying> fragment_partner_outputs(const std::vector<Varying>& outputs, uint32_t attachments) {
+    std::vector<Varying> out;
+    for (const Varying& v : outputs) {
+        if (!can_be_shown(v)) continue;
+        for (uint32_t i = 0; i < elements(v.type) * v.type.columns && out.size() < attachments; ++i) {
+            Varying shown;
+            shown.name = "o" + std::to_string(out.size());
+            shown.location = static_cast<uint32_t>(out.size());
+            shown.type.base = v.type.base;
+            shown.type.rows = v.type.rows;
+            out.push_back(std::move(shown));
+        }
+    }
+    return out;
+}
+
 std::string fragment_partner(const std::vector<Varying>& outputs, uint32_t attachments) {
+    const std::vector<Varying> written = fragment_partner_outputs(outputs, attachments);
     std::string inputs, targets, body;
-    uint32_t used = 0;
-    for (size_t i = 0; i < outputs.size() && used < attachments; ++i) {
+    size_t next = 0;
+    for (size_t i = 0; i < outputs.size() && next < written.size(); ++i) {
         const Varying& v = outputs[i];
-        if (v.type.base == BaseType::float16 || v.type.base == BaseType::float64) continue;
+        if (!can_be_shown(v)) continue;
         inputs += declaration(v, "in", i, !is_floating(v.type.base));
-        ValueType shown = v.type;
-        shown.columns = 1;
         for (uint32_t e = 0; e < elements(v.type); ++e)
-            for (unsigned c = 0; c < v.type.columns && used < attachments; ++c, ++used) {
-                targets += "layout(location = " + std::to_string(used) + ") out " + type_name(shown) + " o" +
-                           std::to_string(used) + ";\n";
-                body += "    o" + std::to_string(used) + " = v" + std::to_string(i) + subscript(v.type, e);
+            for (unsigned c = 0; c < v.type.columns && next < written.size(); ++c, ++next) {
+                const Varying& o = written[next];
+                targets +=
+                    "layout(location = " + std::to_string(o.location) + ") out " + type_name(o.type) + " " + o.name + ";\n";
+                body += "    " + o.name + " = v" + std::to_string(i) + subscript(v.type, e);
                 if (v.type.columns > 1) body += "[" + std::to_string(c) + "]";
                 body += ";\n";
             }

@@ -15,5 +15,7 @@ std::string vertex_partner(const std::vector<Varying>& inputs);
 // A fragment stage that writes each of `outputs`, those of the stage before it, to an attachment of its own as far as there
 // are attachments; an empty one where there is nothing to show.
 std::string fragment_partner(const std::vector<Varying>& outputs, uint32_t attachments);
+// What that stage writes: one value an attachment, from location 0.
+std::vector<Varying> fragment_partner_outputs(const std::vector<Varying>& outputs, uint32_t attachments);
 
 }  // namespace kiln

@@ -1,0 +1,8 @@
+// The worker process of these tests.
+
+#include "compiler/device/vulkan_device.h"
+#include "compiler/workers.h"
+
+int main() {
+    return kiln::run_worker([] { return kiln::open_vulkan_device({}); });
+}
