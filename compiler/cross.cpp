@@ -202,18 +202,16 @@ std::vector<Translated> cross_translate(WordView words, const std::vector<Target
     spvc_context raw = nullptr;
     if (spvc_context_create(&raw) != SPVC_SUCCESS) return refuse_all("SPIRV-Cross: out of memory");
     const Context context(raw);
-    spvc_parsed_ir tree = nullptr;
-    if (spvc_context_parse_spirv(raw, words.data(), words.size(), &tree) != SPVC_SUCCESS) {
-        for (const size_t i : todo) out[i] = refused(spvc_context_get_last_error_string(raw));
-        return out;
-    }
     for (const size_t i : todo) {
-        const auto mode = i == todo.back() ? SPVC_CAPTURE_MODE_TAKE_OWNERSHIP : SPVC_CAPTURE_MODE_COPY;
+        spvc_parsed_ir tree = nullptr;
         spvc_compiler compiler = nullptr;
-        if (spvc_context_create_compiler(raw, backend_of(targets[i]), tree, mode, &compiler) != SPVC_SUCCESS)
+        if (spvc_context_parse_spirv(raw, words.data(), words.size(), &tree) != SPVC_SUCCESS ||
+            spvc_context_create_compiler(raw, backend_of(targets[i]), tree, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &compiler) !=
+                SPVC_SUCCESS)
             out[i] = refused(spvc_context_get_last_error_string(raw));
         else
             out[i] = Translation(raw, compiler, targets[i], *view).run(edits[i]);
+        spvc_context_release_allocations(raw);
     }
     return out;
 }
