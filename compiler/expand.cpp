@@ -259,7 +259,8 @@ Expander::Result Expander::expand(Token& token, bool undefined_is_zero) {
                 disagree(Disagreement::line, 0);
                 return Result::failed;
             }
-            const uint32_t physical = last_ != nullptr ? last_->line : token.line;
+            const bool fixed = (token.flags & Token::line_fixed) != 0 || last_ == nullptr;
+            const uint32_t physical = fixed ? token.line : last_->line;
             out.text =
                 name == spelling::file_macro ? here->file : pp_.spellings.intern(static_cast<int64_t>(physical) + here->shift);
             if (pp_.spellings.text(out.text).front() == '"') out.kind = Tok::string;
@@ -344,6 +345,10 @@ bool Expander::collect(Input& in, Token& token, const Token& name) {
             if (token.kind == Tok::op && token.text == spelling::paren_open) ++depth;
             if (close && depth > 0) --depth;
             token.flags &= static_cast<uint8_t>(~Token::from_body);
+            if (token.text == spelling::line_macro && last_ != nullptr) {
+                token.line = last_->line;
+                token.flags |= Token::line_fixed;
+            }
             in.arguments[index].push_back(token);
             any = true;
         }

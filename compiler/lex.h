@@ -32,8 +32,9 @@ struct Token {
     uint16_t file = 0;
     Tok kind = Tok::end;
     uint8_t flags = 0;
-    static constexpr uint8_t spaced = 1;     // white space or a comment stands before it
-    static constexpr uint8_t from_body = 2;  // came straight out of a macro's replacement list
+    static constexpr uint8_t spaced = 1;      // white space or a comment stands before it
+    static constexpr uint8_t line_fixed = 4;  // __LINE__ in a macro argument: `line` is its value's line
+    static constexpr uint8_t from_body = 2;   // came straight out of a macro's replacement list
 };
 
 enum class Directive : uint8_t {
