@@ -165,7 +165,9 @@ int strength(const Pending& p) {
 
 class Parser {
 public:
-    Parser(std::string_view text, const std::vector<Axis>& axes) : text_(text), axes_(axes), lexer_(text) {}
+    // Blanks behind the text are not part of it, so that what is missing at its end is pointed at right behind the last word.
+    Parser(std::string_view text, const std::vector<Axis>& axes)
+        : text_(text.substr(0, text.find_last_not_of(" \t\r\n") + 1)), axes_(axes), lexer_(text_) {}
 
     std::variant<Expr, ExprError> run() {
         if (text_.size() > expr_size_limit)
@@ -233,9 +235,8 @@ private:
             return true;
         }
         if (t.kind == Kind::end)
-            fail(t.offset, text_.find_first_not_of(" \t\r\n") == std::string_view::npos
-                               ? "the expression is empty"
-                               : "the expression ends where an axis, a value or an integer is expected");
+            fail(t.offset, text_.empty() ? "the expression is empty"
+                                         : "the expression ends where an axis, a value or an integer is expected");
         else
             fail(t.offset, "expected an axis, a value, an integer or '(' before '" + std::string(t.text) + "'");
         return false;

@@ -174,6 +174,7 @@ void apply_scenes(std::vector<Scene>& scenes, std::vector<std::unique_ptr<Space>
         shaders.emplace(spaces[i]->shader, i);
         names.push_back(spaces[i]->shader);
     }
+    const size_t errors_before = diags.errors();
     std::vector<std::vector<Set>> drawn(spaces.size());
     std::vector<bool> named(spaces.size());
     for (Scene& scene : scenes) {
@@ -193,7 +194,7 @@ void apply_scenes(std::vector<Scene>& scenes, std::vector<std::unique_ptr<Space>
     }
     for (size_t i = 0; i < spaces.size(); ++i) {
         spaces[i]->needed = union_of(*spaces[i]->diagram, std::move(drawn[i]));
-        if (!named[i])
+        if (!named[i] && diags.errors() == errors_before)
             diags.warning({scenes.front().path, 0, 0},
                           "no object names shader " + quoted(spaces[i]->shader) + ": all of its variants are left out");
     }

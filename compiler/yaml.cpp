@@ -53,8 +53,13 @@ private:
     bool too_deep_ = false, too_long_ = false;
 };
 
-constexpr const char* quote_hint =
-    "quote the expression: a value that begins with '!', '&', '*', '{' or '[' means something else to YAML";
+constexpr const char* quote_hint = "quote it: text that begins with '!', '&', '*', '{' or '[' means something else to YAML";
+constexpr const char* quote_expression =
+    "quote the expression: text that begins with '!', '&', '*', '{' or '[' means something else to YAML";
+
+bool is_rule(std::string_view line) {
+    return line.find("forbid:") != std::string_view::npos || line.find("require:") != std::string_view::npos;
+}
 
 // The library's messages in terms of what to change.
 std::string plain_words(const std::string& message) {
@@ -200,11 +205,12 @@ private:
 bool YamlBuilder::property(size_t offset) {
     const char c = at(offset);
     if (c != '!' && c != '&' && c != '*') return false;
+    const std::string line = yaml_.source_line(yaml_.place_at(offset));
     reject(offset,
-           c == '!'   ? "'!' begins a YAML tag, which a manifest does not use"
-           : c == '&' ? "'&' begins a YAML anchor, which a manifest does not use"
-                      : "'*' begins a YAML alias, which a manifest does not use",
-           {quote_hint});
+           c == '!'   ? "'!' begins a YAML tag, which kiln does not use"
+           : c == '&' ? "'&' begins a YAML anchor, which kiln does not use"
+                      : "'*' begins a YAML alias, which kiln does not use",
+           {is_rule(line) ? quote_expression : quote_hint});
     return true;
 }
 
@@ -294,7 +300,7 @@ void YamlBuilder::check_keys(Yaml::Node map) {
         if (yaml_.kind(pair.key) != YamlKind::scalar) continue;
         const std::string_view key = yaml_.value(pair.key);
         const size_t offset = yaml_.nodes_[pair.key].offset;
-        if (key == "<<" && yaml_.is_plain(pair.key)) reject(offset, "'<<' is YAML's merge key, which a manifest does not use");
+        if (key == "<<" && yaml_.is_plain(pair.key)) reject(offset, "'<<' is YAML's merge key, which kiln does not use");
         const auto [first, fresh] = seen.emplace(key, pair.key);
         if (!fresh)
             reject(offset, "duplicate key '" + std::string(key.substr(0, 64)) + "'",
@@ -310,14 +316,21 @@ void YamlBuilder::failed(size_t offset, const std::string& message) {
                                         : "the bracketed collection that follows has more than " +
                                               std::to_string(Yaml::flow_limit) +
                                               " items: write its outer levels as indented lines");
-    if (depth_ > Yaml::depth_limit) return;  // already said
+    if (depth_ > Yaml::depth_limit) return;                                                 // already said
+    if (message.rfind(YAML::ErrorMsg::INVALID_ESCAPE, 0) == 0 && offset >= 2) offset -= 2;  // it points behind the escape
+    if (message.find("anchor") != std::string::npos || message.find("alias") != std::string::npos) {
+        size_t sign = std::min(offset, yaml_.text_.size());
+        if (sign > 0 && at(sign) == '\n') --sign;
+        while (sign > 0 && at(sign) != '\n' && at(sign) != '&' && at(sign) != '*') --sign;
+        if (property(sign)) return;
+    }
     if (property(offset)) return;
     const Place place = yaml_.place_at(offset);
     const std::string line = yaml_.source_line(place);
     std::vector<std::string> notes;
     const size_t first = line.find_first_not_of(" ");
     if (first != std::string::npos && line[first] == '\t') notes.push_back("a tab cannot indent: use spaces");
-    if (line.find("forbid:") != std::string::npos || line.find("require:") != std::string::npos) notes.push_back(quote_hint);
+    if (is_rule(line)) notes.push_back(quote_expression);
     reject(offset, "not YAML: " + plain_words(message), std::move(notes));
 }
 
@@ -335,7 +348,7 @@ std::optional<Yaml> Yaml::parse(std::string path, std::string text, Diags& diags
         return std::nullopt;
     }
     if (const size_t at = find_directive(yaml.text_); at != std::string_view::npos) {
-        builder.reject(at, "'%' begins a YAML directive, which a manifest does not use");
+        builder.reject(at, "'%' begins a YAML directive, which kiln does not use");
         return std::nullopt;
     }
     try {

@@ -29,7 +29,7 @@ const Yaml::Pair* Fields::find(std::string_view key) const {
 
 const Yaml::Pair* Fields::need(std::string_view key) {
     const Yaml::Pair* const pair = find(key);
-    if (pair == nullptr && is_map_) errors_.at(node_, what_ + " needs a '" + std::string(key) + "'");
+    if (pair == nullptr && is_map_) errors_.at(node_, what_ + " needs '" + std::string(key) + "'");
     return pair;
 }
 

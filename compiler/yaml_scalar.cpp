@@ -99,10 +99,8 @@ void Decoder::escape() {
         const char d = look();
         code = code << 4 | static_cast<uint32_t>(d >= '0' && d <= '9' ? d - '0' : (d | 0x20) - 'a' + 10);
     }
-    const size_t before = value.size();
     append_utf8(value, code);
     origin.resize(value.size(), static_cast<uint32_t>(from));
-    (void)before;
 }
 
 // Plain and quoted scalars: blanks before a line break do not count.
@@ -160,7 +158,7 @@ void Decoder::block() {
     }
     bool previous_more_indented = true;
     bool first = true;
-    while (!done()) {
+    while (value.size() <= wanted_) {
         const size_t breaks_from = at_;
         size_t empty_lines = 0;
         size_t column = 0;
@@ -171,7 +169,7 @@ void Decoder::block() {
             ++empty_lines;
             skip_break();
         }
-        const bool ended = done() || column < indent;
+        const bool ended = at_ >= text_.size() || column < indent;
         const bool more_indented = !ended && blank(look());
         if (!first) {
             // The break that ended the previous line, and the blank lines after it.

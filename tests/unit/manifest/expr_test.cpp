@@ -109,7 +109,7 @@ TEST(Expr, PrecedenceAndNames) {
 TEST(Expr, Mistakes) {
     const std::pair<const char*, const char*> table[] = {
         {"", "0: the expression is empty"},
-        {"  \n", "3: the expression is empty"},
+        {"  \n", "0: the expression is empty"},
         {"ligth", "0: unknown axis 'ligth' (did you mean 'light'?)"},
         {"light == pont", "9: 'pont' is not a value of axis 'light' (did you mean 'point'?)"},
         {"pont == light", "0: 'pont' is not a value of axis 'light' (did you mean 'point'?)"},
@@ -137,6 +137,7 @@ TEST(Expr, Mistakes) {
         {"light -3", "6: expected an operator before '-3'"},
         {"light &&", "8: the expression ends where an axis, a value or an integer is expected"},
         {"&& light", "0: expected an axis, a value, an integer or '(' before '&&'"},
+        {"light && \n ", "8: the expression ends where an axis, a value or an integer is expected"},
         {"light && )", "9: expected an axis, a value, an integer or '(' before ')'"},
         {"()", "1: expected an axis, a value, an integer or '(' before ')'"},
         {"(light", "0: this '(' is not closed"},

@@ -108,8 +108,8 @@ TEST(ManifestErrors, Axes) {
          "3:3: 'a-b' cannot be the name of an axis: names are letters, digits and '_', begin with no digit, and have at most 255 "
          "bytes\n"},
         {"  a: {macro: A, vals: bool}\n",
-         "3:6: axis 'a' needs a 'values'\n3:17: unknown key 'vals' in axis 'a' (did you mean 'values'?)\n"},
-        {"  a: {values: bool}\n", "3:6: axis 'a' needs a 'macro'\n"},
+         "3:6: axis 'a' needs 'values'\n3:17: unknown key 'vals' in axis 'a' (did you mean 'values'?)\n"},
+        {"  a: {values: bool}\n", "3:6: axis 'a' needs 'macro'\n"},
         {"  a: bool\n", "3:6: axis 'a' must be a map, this is the text 'bool'\n"},
         {"  a:\n", "3:5: axis 'a' must be a map, this is empty\n"},
         {"  a: {macro: , values: bool}\n", "3:13: the macro of axis 'a' must be text, this is empty\n"},
@@ -176,7 +176,7 @@ TEST(ManifestErrors, Top) {
               "1:7: this program reads manifests of version 1 ('kiln: 1'), this is the text '2'\n");
     EXPECT_EQ(problems("kiln: '1'\nshaders:\n  - {name: s, stages: {vertex: v}}\n"),
               "1:7: this program reads manifests of version 1 ('kiln: 1'), this is the text '1'\n");
-    EXPECT_EQ(problems("name: x\n"), "1:1: a manifest needs a 'kiln'\n1:1: a manifest needs a 'shaders'\n");
+    EXPECT_EQ(problems("name: x\n"), "1:1: a manifest needs 'kiln'\n1:1: a manifest needs 'shaders'\n");
     EXPECT_EQ(problems("- a\n"), "1:1: a manifest must be a map, this is a list\n");
     EXPECT_EQ(problems("just text\n"), "1:1: a manifest must be a map, this is the text 'just text'\n");
     EXPECT_EQ(problems("~\n"), "1:1: a manifest must be a map, this is empty\n");
@@ -196,8 +196,8 @@ TEST(ManifestErrors, Shaders) {
         {"- {name: s, stages: {vertex: v}, axes: [a]}\n- {name: t, stages: {vertex: v}, axes: [b]}\n",
          "6:28: this rule fits no shader: none has all of its axes\n"},
         {"- s\n", "8:3: a shader must be a map, this is the text 's'\n"},
-        {"- {stages: {vertex: v}}\n", "8:3: a shader needs a 'name'\n"},
-        {"- {name: s}\n", "8:3: a shader needs a 'stages'\n"},
+        {"- {stages: {vertex: v}}\n", "8:3: a shader needs 'name'\n"},
+        {"- {name: s}\n", "8:3: a shader needs 'stages'\n"},
         {"- {name: s, stages: {vertex: v}, axis: [a]}\n", "8:34: unknown key 'axis' in a shader (did you mean 'axes'?)\n"},
         {"- {name: 'a/b', stages: {vertex: v}}\n",
          "8:10: a shader's name cannot be 'a/b': letters, digits, '_', and behind the first also '.' and '-', at most 255 "
