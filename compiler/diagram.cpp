@@ -74,7 +74,7 @@ void Diagram::Body::Marks::start(size_t nodes) {
 NodeId Diagram::Body::child(const Node& node, uint32_t digit) {
     const Edge* e = node.edges;
     if (node.count > 8)
-        e = std::lower_bound(node.begin(), node.end(), digit, [](const Edge& edge, uint32_t d) { return edge.last < d; });
+        e = run_at(node.begin(), node.end(), digit);
     else
         while (e->last < digit) ++e;
     return e->child.node;
@@ -173,7 +173,11 @@ NodeId Diagram::Body::apply(NodeId a, NodeId b) {
     } else if (nb.level < na.level) {
         for (const Edge& e : nb) push_run(base, e.last, apply<op>(a, e.child.node));
     } else {
+        // A run that settles the result alone is passed in one step, however finely the other node divides it.
+        constexpr NodeId settles_a = op == op_either, settles_b = op != op_both;
         for (const Edge *x = na.begin(), *y = nb.begin(); x != na.end();) {
+            if (x->child.node == settles_a && x->last > y->last) y = run_at(y, nb.end(), x->last);
+            if (y->child.node == settles_b && y->last > x->last) x = run_at(x, na.end(), y->last);
             const uint32_t last = std::min(x->last, y->last);
             push_run(base, last, apply<op>(x->child.node, y->child.node));
             const bool step_x = x->last == last, step_y = y->last == last;

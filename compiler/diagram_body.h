@@ -1,6 +1,7 @@
 #pragma once
 // What the diagram's sources share: node storage, the unique table and the computed cache. Included by diagram_*.cpp only.
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -48,6 +49,10 @@ struct Diagram::Body {
     bool exhausted = false;
     uint32_t levels() const { return static_cast<uint32_t>(order.size()); }
     static NodeId child(const Node& node, uint32_t digit);
+    // The run at or after `from` that holds the digit.
+    static const Edge* run_at(const Edge* from, const Edge* end, uint32_t digit) {
+        return std::lower_bound(from, end, digit, [](const Edge& e, uint32_t d) { return e.last < d; });
+    }
 
     // Result runs under construction. An operation appends above the base it saw on entry and leaves the stack as it was.
     std::vector<Edge> runs;

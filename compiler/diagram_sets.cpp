@@ -21,6 +21,8 @@ bool Diagram::Body::subset(NodeId a, NodeId b) {
         for (const Edge* e = nb.begin(); holds && e != nb.end(); ++e) holds = subset(a, e->child.node);
     } else {
         for (const Edge *x = na.begin(), *y = nb.begin(); holds && x != na.end();) {
+            if (x->child.node == 0 && x->last > y->last) y = run_at(y, nb.end(), x->last);
+            if (y->child.node == 1 && y->last > x->last) x = run_at(x, na.end(), y->last);
             const uint32_t last = std::min(x->last, y->last);
             holds = subset(x->child.node, y->child.node);
             const bool step_x = x->last == last, step_y = y->last == last;
@@ -46,6 +48,8 @@ bool Diagram::Body::disjoint(NodeId a, NodeId b) {
         for (const Edge* e = nb.begin(); holds && e != nb.end(); ++e) holds = disjoint(a, e->child.node);
     } else {
         for (const Edge *x = na.begin(), *y = nb.begin(); holds && x != na.end();) {
+            if (x->child.node == 0 && x->last > y->last) y = run_at(y, nb.end(), x->last);
+            if (y->child.node == 0 && y->last > x->last) x = run_at(x, na.end(), y->last);
             const uint32_t last = std::min(x->last, y->last);
             holds = disjoint(x->child.node, y->child.node);
             const bool step_x = x->last == last, step_y = y->last == last;

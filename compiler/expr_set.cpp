@@ -258,27 +258,35 @@ std::vector<uint32_t> axes_below(const Expr& expr, uint32_t node) {
     return axes;
 }
 
-void collect_groups(const Expr& expr, uint32_t node, std::vector<std::vector<uint32_t>>& groups) {
-    // A part over more axes than this says nothing about which of them belong together.
-    constexpr size_t largest = 48;
-    std::unordered_map<uint32_t, std::vector<uint32_t>> axes;  // absent: too many
-    for (const uint32_t n : below(expr, node)) {
+void collect_gates(const Expr& expr, uint32_t node, size_t axes, std::vector<Gate>& gates) {
+    const std::vector<uint32_t> order = below(expr, node);
+    std::unordered_map<uint32_t, Op> above;  // the operator that reads a node
+    for (const uint32_t n : order)
+        for (const uint32_t arg : expr.nodes[n].args) above[arg] = expr.nodes[n].op;
+    std::unordered_map<uint32_t, std::vector<uint32_t>> wires;  // what a node hands up: one vertex, or a chain's inputs
+    for (const uint32_t n : order) {
         const ExprNode& here = expr.nodes[n];
-        std::vector<uint32_t> joined;
-        if (here.op == Op::axis) joined.push_back(here.axis);
-        bool small = true;
-        for (const uint32_t arg : here.args) {
-            const auto it = axes.find(arg);
-            small = small && it != axes.end();
-            if (small) joined.insert(joined.end(), it->second.begin(), it->second.end());
+        std::vector<uint32_t>& out = wires[n];
+        if (here.op == Op::axis) out.push_back(here.axis);
+        const size_t operands = here.op == Op::in ? 1 : here.args.size();
+        bool all_axes = operands == 2;
+        for (size_t i = 0; i < operands; ++i) {
+            std::vector<uint32_t>& in = wires[here.args[i]];
+            all_axes = all_axes && expr.nodes[here.args[i]].op == Op::axis;
+            if (out.empty())
+                out.swap(in);
+            else
+                out.insert(out.end(), in.begin(), in.end());
         }
-        std::sort(joined.begin(), joined.end());
-        joined.erase(std::unique(joined.begin(), joined.end()), joined.end());
-        if (!small || joined.size() > largest) continue;
-        bool grew = true;  // than each of its parts
-        for (const uint32_t arg : here.args) grew = grew && axes[arg].size() < joined.size();
-        if (joined.size() > 1 && grew) groups.push_back(joined);
-        axes[n] = std::move(joined);
+        const bool chains = here.op == Op::conjunction || here.op == Op::disjunction;
+        const auto reader = above.find(n);
+        if (chains && reader != above.end() && reader->second == here.op) continue;
+        std::sort(out.begin(), out.end());
+        out.erase(std::unique(out.begin(), out.end()), out.end());
+        if (out.size() < 2) continue;
+        const bool compares = all_axes && !chains && here.op != Op::implies;
+        gates.push_back({out, compares});
+        out.assign(1, static_cast<uint32_t>(axes + gates.size() - 1));
     }
 }
 

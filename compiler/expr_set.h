@@ -5,6 +5,7 @@
 
 #include "compiler/diagram.h"
 #include "compiler/expr.h"
+#include "compiler/order.h"
 
 namespace kiln {
 
@@ -20,8 +21,8 @@ std::vector<Conjunct> conjuncts(const Expr& expr, bool holds);
 // The distinct axes below a node, ascending.
 std::vector<uint32_t> axes_below(const Expr& expr, uint32_t node);
 
-// Groups of axes that stand together in some part below a node: what an order should keep near.
-void collect_groups(const Expr& expr, uint32_t node, std::vector<std::vector<uint32_t>>& groups);
+// The part below a node as a circuit: appends its gates. Chains of one operator are one gate.
+void collect_gates(const Expr& expr, uint32_t node, size_t axes, std::vector<Gate>& gates);
 
 // The set in which the part holds. `axes` are those of the diagram, and those the expression was parsed against.
 Set set_of(Diagram& diagram, const std::vector<Axis>& axes, const Expr& expr, uint32_t node);

@@ -10,9 +10,14 @@
 
 namespace kiln {
 
-// FORCE (Aloul, Markov, Sakallah 2003): axes that occur together move towards each other. Returns order[level] = axis; the
-// manifest's own order when nothing is gained.
-std::vector<uint32_t> force_order(size_t axes, const std::vector<std::vector<uint32_t>>& together);
+// One step of a condition: what it joins. Inputs are axes, or the number of axes plus the index of an earlier gate.
+struct Gate {
+    std::vector<uint32_t> inputs;
+    bool compares = false;  // two axes with each other; otherwise every input contributes a truth value
+};
+
+// A first order from how the conditions are built. Returns order[level] = axis; the order written when no other is better.
+std::vector<uint32_t> initial_order(const std::vector<uint32_t>& radices, const std::vector<Gate>& gates);
 
 // The same sets in a diagram of their own, holding nothing else.
 struct Reordered {

@@ -35,14 +35,14 @@ public:
     Compiler(const std::vector<Axis>& axes, const std::vector<Rule>& rules, size_t limit)
         : axes_(axes), rules_(rules), limit_(limit), made_(rules.size(), 0) {
         for (const Axis& axis : axes) radices_.push_back(static_cast<uint32_t>(axis.values.size()));
-        std::vector<std::vector<uint32_t>> groups;
+        std::vector<Gate> gates;
         for (uint32_t r = 0; r < rules.size(); ++r) {
             for (const Conjunct c : conjuncts(rules[r].expr, !rules[r].forbid)) {
                 parts_.push_back({r, c, axes_below(rules[r].expr, c.node)});
-                collect_groups(rules[r].expr, c.node, groups);
+                collect_gates(rules[r].expr, c.node, axes.size(), gates);
             }
         }
-        diagram_ = std::make_unique<Diagram>(radices_, force_order(axes.size(), groups), limit);
+        diagram_ = std::make_unique<Diagram>(radices_, initial_order(radices_, gates), limit);
     }
 
     Compiled run() {
