@@ -6,6 +6,7 @@
 #include "tools/json.h"
 #include "tools/select.h"
 #include "tools/session.h"
+#include "tools/table_file.h"
 #include "tools/verbs.h"
 
 namespace kiln {
@@ -31,13 +32,6 @@ struct Answer {
     std::vector<Because> because;
     std::vector<StageAnswer> stages;
 };
-
-std::string selection_text(const Space& space, const Selection& selection) {
-    std::string out;
-    for (size_t a = 0; a < selection.size(); ++a)
-        if (selection[a]) out += (out.empty() ? "" : " ") + space.axes[a].name + "=" + space.axes[a].values[*selection[a]].name;
-    return out.empty() ? "every variant" : out;
-}
 
 Set allowed_by(Space& space, const Rule& rule) {
     const Set holds = compile_expr(space, rule.expr);
@@ -65,7 +59,7 @@ Answer answer_of(Build& build, Space& space, const Selection& selection) {
     const Set needed = diagram.both(wanted, space.needed);
     Answer answer;
     answer.shader = space.shader;
-    answer.variant = selection_text(space, selection);
+    answer.variant = selection_text(space.axes, selection);
     answer.selected = diagram.count(wanted);
     answer.legal = diagram.count(legal);
     answer.needed = diagram.count(needed);

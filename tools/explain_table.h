@@ -6,7 +6,6 @@
 
 namespace kiln {
 
-bool is_table(Files& files, const std::string& path);
 int explain_table(const Args& args, Session& session);
 
 }  // namespace kiln

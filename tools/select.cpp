@@ -51,6 +51,13 @@ Result<Selection> parse_selection(const std::vector<Axis>& axes, const std::vect
     return selection;
 }
 
+std::string selection_text(const std::vector<Axis>& axes, const Selection& selection) {
+    std::string out;
+    for (size_t a = 0; a < selection.size(); ++a)
+        if (selection[a]) out += (out.empty() ? "" : " ") + axes[a].name + "=" + axes[a].values[*selection[a]].name;
+    return out.empty() ? "every variant" : out;
+}
+
 Set set_of(Diagram& diagram, const Selection& selection) {
     Set set = Diagram::all();
     for (uint32_t a = 0; a < selection.size(); ++a)

@@ -14,6 +14,8 @@ using Selection = std::vector<std::optional<uint32_t>>;
 
 // Names as in the manifest; a boolean axis also takes 0 and 1. A wrong name is an Error with the nearest right one.
 Result<Selection> parse_selection(const std::vector<Axis>& axes, const std::vector<std::string>& words, size_t first);
+// "light=point pass=depth", or "every variant".
+std::string selection_text(const std::vector<Axis>& axes, const Selection& selection);
 Set set_of(Diagram& diagram, const Selection& selection);
 
 // The index of the shader called `name`; of the only one when `name` is empty.
