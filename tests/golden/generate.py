@@ -235,7 +235,7 @@ def shaders_and_rules():
         "shaders": [
             {"name": "mesh", "stages": {"vertex": "mesh.vert", "fragment": "mesh.frag"}, "axes": ["pass", "fog", "grass"],
              "rules": [("forbid", "grass && fog")]},
-            {"name": "blur", "stages": {"compute": "blur.comp"}, "axes": ["taps"], "defines": {"SCALE": 2}},
+            {"name": "blur", "stages": {"compute": "blur.comp"}, "axes": ["grass", "taps"], "defines": {"SCALE": 2}},
         ],
     }
 
