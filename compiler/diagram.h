@@ -53,7 +53,7 @@ public:
 
     Count count(Set s);                                       // members, over all axes
     std::vector<Count> count_by_digit(Set s, uint32_t axis);  // one per digit
-    std::vector<std::vector<Count>> count_by_digits(Set s);   // the same of every axis, in one walk
+    std::vector<std::vector<Count>> count_by_digits(Set s);   // the same of every axis
     std::optional<Digits> witness(Set s);                     // the smallest member, axes compared in index order
     Count rank(Set s, const Digits& member);                  // its place among the members, axes in index order
     std::optional<Digits> unrank(Set s, const Count& rank);   // none when the rank is not below the count

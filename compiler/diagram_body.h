@@ -82,6 +82,16 @@ struct Diagram::Body {
     const Count& count_below(NodeId n);
     Count product(uint32_t from, uint32_t to) const;  // of the widths of levels [from, to)
 
+    // The paths into the nodes of the set whose digits were counted last, so that asking axis after axis walks them once.
+    struct Paths {
+        Set of;  // none() at first, which is never asked about
+        std::vector<Set> order;
+        std::vector<Count> weight;                    // assignments of the levels above that lead here, as `order`
+        std::vector<std::vector<uint32_t>> at_level;  // places in `order`
+    };
+    Paths paths;
+    void follow_paths(Set s, std::vector<Set> reached);
+
     std::vector<bool> last_keep;
     uint32_t last_projection = first_projection;
     Marks marks, other_marks;

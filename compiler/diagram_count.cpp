@@ -54,59 +54,68 @@ Count Diagram::count(Set s) {
     return total;
 }
 
-// Counts per digit of every axis in one walk: below a node from the counts, above it by pushing path weights down. A level
-// that some paths skip gets what those paths hold in equal shares.
-std::vector<std::vector<Count>> Diagram::count_by_digits(Set s) {
-    Body& b = *body_;
-    const Count total = count(s);
-    std::vector<std::vector<Count>> result(b.radices.size());
-    for (size_t axis = 0; axis < result.size(); ++axis) result[axis].assign(b.radices[axis], Count());
-    if (s == none()) return result;
-
-    const std::vector<Set> order = reachable({&s, 1});
-    std::vector<Count> weight(order.size());
-    b.marks.start(b.nodes.size());
-    for (uint32_t i = 0; i < order.size(); ++i) b.marks.set(order[i].node, i);
-    if (!order.empty()) weight.back() = b.product(0, b.nodes[s.node].level);  // the root comes last
-
-    std::vector<Count> tested(b.radices.size());               // members whose path tests the axis
-    std::vector<std::vector<Count>> starts(b.radices.size());  // change of the count at a digit: upwards ...
-    std::vector<std::vector<Count>> ends(b.radices.size());    // ... and downwards
-    for (uint32_t i = static_cast<uint32_t>(order.size()); i-- > 0;) {
-        const Body::Node node = b.nodes[order[i].node];
-        const uint32_t axis = b.order[node.level];
-        if (starts[axis].empty()) {
-            starts[axis].resize(b.radices[axis] + 1);
-            ends[axis].resize(b.radices[axis] + 1);
-        }
+void Diagram::Body::follow_paths(Set s, std::vector<Set> reached) {
+    paths.of = s;
+    paths.order = std::move(reached);
+    paths.weight.assign(paths.order.size(), Count());
+    paths.at_level.assign(levels(), {});
+    marks.start(nodes.size());
+    for (uint32_t i = 0; i < paths.order.size(); ++i) marks.set(paths.order[i].node, i);
+    if (!paths.order.empty()) paths.weight.back() = product(0, nodes[s.node].level);  // the root comes last
+    for (uint32_t i = static_cast<uint32_t>(paths.order.size()); i-- > 0;) {
+        const Node node = nodes[paths.order[i].node];
+        paths.at_level[node.level].push_back(i);
         uint32_t first = 0;
         for (const Edge& e : node) {
-            const uint32_t begin = first, digits = e.last + 1 - first;
+            const uint64_t digits = e.last + 1 - first;
             first = e.last + 1;
-            if (e.child.node == 0) continue;
-            const uint32_t to = b.nodes[e.child.node].level;
-            Count into = weight[i];
-            if (to > node.level + 1u) into *= b.product(node.level + 1u, to);
-            Count each = into * b.count_below(e.child.node);
-            tested[axis] += each * Count(digits);
-            starts[axis][begin] += each;
-            ends[axis][e.last + 1] += each;
-            if (e.child.node > 1) weight[b.marks.get(e.child.node)] += into * Count(digits);
+            if (e.child.node <= 1) continue;
+            const uint32_t to = nodes[e.child.node].level;
+            Count into = paths.weight[i] * Count(digits);
+            if (to > node.level + 1u) into *= product(node.level + 1u, to);
+            paths.weight[marks.get(e.child.node)] += into;
         }
     }
-    for (size_t axis = 0; axis < result.size(); ++axis) {
-        Count running = (total - tested[axis]).divide(Count(b.radices[axis]), nullptr);
-        for (uint32_t d = 0; d < b.radices[axis]; ++d) {
-            if (!starts[axis].empty()) {
-                running += starts[axis][d];
-                running -= ends[axis][d];
-            }
-            result[axis][d] = running;
-        }
-    }
-    return result;
 }
 
-std::vector<Count> Diagram::count_by_digit(Set s, uint32_t axis) { return std::move(count_by_digits(s)[axis]); }
+// Below a node from its count, above it from the weight of the paths that lead there. Paths that skip the axis's level share
+// what they hold equally among its digits.
+std::vector<Count> Diagram::count_by_digit(Set s, uint32_t axis) {
+    Body& b = *body_;
+    const uint32_t level = b.level_of[axis], radix = b.radices[axis];
+    if (s == none()) return std::vector<Count>(radix);
+    const Count total = count(s);
+    if (b.paths.of != s) b.follow_paths(s, reachable({&s, 1}));
+    Count tested;  // members whose path tests the axis
+    std::vector<Count> rise(radix + 1), fall(radix + 1);
+    for (const uint32_t i : b.paths.at_level[level]) {
+        uint32_t first = 0;
+        for (const Edge& e : b.nodes[b.paths.order[i].node]) {
+            const uint32_t begin = first;
+            first = e.last + 1;
+            if (e.child.node == 0) continue;
+            Count each = b.paths.weight[i] * b.count_below(e.child.node);
+            const uint32_t to = b.nodes[e.child.node].level;
+            if (to > level + 1) each *= b.product(level + 1, to);
+            tested += each * Count(first - begin);
+            rise[begin] += each;
+            fall[first] += each;
+        }
+    }
+    std::vector<Count> counts;
+    Count running = (total - tested).divide(Count(radix), nullptr);
+    for (uint32_t d = 0; d < radix; ++d) {
+        running += rise[d];
+        running -= fall[d];
+        counts.push_back(running);
+    }
+    return counts;
+}
+
+std::vector<std::vector<Count>> Diagram::count_by_digits(Set s) {
+    std::vector<std::vector<Count>> counts;
+    for (uint32_t axis = 0; axis < body_->radices.size(); ++axis) counts.push_back(count_by_digit(s, axis));
+    return counts;
+}
 
 }  // namespace kiln

@@ -186,6 +186,19 @@ private:
     // Nodes below both levels never lose their last reference in a swap: they are reached by other runs afterwards.
     void release(uint32_t n) { --nodes_[n].references; }
 
+    // Edge visits that swapping `level` with the next takes: a turning node walks its runs once per stretch of the lower axis.
+    size_t swap_cost(uint32_t level) const {
+        const uint32_t y = order_[level + 1];
+        size_t cost = 0;
+        for (const uint32_t n : at_[order_[level]]) {
+            size_t stretches = 0;
+            for (const Run& r : nodes_[n].runs)
+                if (nodes_[r.to].axis == y) stretches += nodes_[r.to].runs.size();
+            cost += nodes_[n].runs.size() * (stretches + 1);
+        }
+        return cost;
+    }
+
     void turn(uint32_t n, uint32_t x, uint32_t y, Unique& unique) {
         const std::vector<Run> old = nodes_[n].runs;
         std::vector<size_t> position(old.size(), 0);
@@ -229,15 +242,18 @@ private:
                 best = place_[axis];
             }
         };
-        const auto too_far = [&] { return size_ > best_size + best_size / 4 + 16 || work_ > budget_; };
+        // Swaps that the budget cannot pay are not begun; the way back is always taken.
+        const auto too_far = [&](uint32_t level) {
+            return size_ > best_size + best_size / 4 + 16 || work_ + swap_cost(level) > budget_;
+        };
         const auto down = [&] {
-            while (place_[axis] < last && !too_far()) {
+            while (place_[axis] < last && !too_far(place_[axis])) {
                 swap(place_[axis]);
                 note();
             }
         };
         const auto up = [&] {
-            while (place_[axis] > 0 && !too_far()) {
+            while (place_[axis] > 0 && !too_far(place_[axis] - 1)) {
                 swap(place_[axis] - 1);
                 note();
             }
