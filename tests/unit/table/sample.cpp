@@ -86,7 +86,7 @@ uint32_t Sample::module(Stage stage, const std::string& text) {
     if (known != known_.end()) return known->second;
     Module m;
     m.stage = stage;
-    m.words = {0x07230203u, 0x10300u, static_cast<uint32_t>(modules_.list.size())};
+    m.words = {0x07230203u, 0x10300u, static_cast<uint32_t>(stage)};
     for (const char c : text) m.words.push_back(static_cast<uint8_t>(c));
     m.unoptimised = m.words;
     m.unoptimised.push_back(99);
