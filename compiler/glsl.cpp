@@ -16,9 +16,11 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <shared_mutex>
 
 #include "compiler/messages.h"
+#include "compiler/text_depth.h"
 
 namespace kiln {
 namespace {
@@ -149,6 +151,9 @@ constexpr EShMessages vulkan_rules = static_cast<EShMessages>(EShMsgDefault | ES
 void say_it_plainly(std::vector<ToolMessage>& messages, std::string_view text) {
     for (ToolMessage& m : messages) {
         if (m.text.find("Missing entry point") != std::string::npos) m.text = "no main() in this stage";
+        if (m.text == "memory exhausted") m.text = "the text nests deeper than the compiler can follow";
+        const size_t stage = m.text.find(" stage: ");
+        if (m.text.starts_with("Linking ") && stage != std::string::npos) m.text.erase(0, stage + 8);
         if (m.text.starts_with("#version: ") && version_line(text).empty()) {
             m.text = "no #version line in this stage: GLSL for Vulkan begins with one, 140 or higher";
         }
@@ -209,6 +214,10 @@ Compiled compile_here(Stage stage, std::string_view text, const Options& options
 class Alone {
 public:
     Alone(EShLanguage language, std::string_view text) : shader_(language), text_(text) {
+        if (std::optional<ToolMessage> problem = too_deep(text)) {
+            messages.push_back(std::move(*problem));
+            return;
+        }
         strings_[0] = text_.data();
         lengths_[0] = static_cast<int>(text_.size());
         shader_.setStringsWithLengths(strings_, lengths_, 1);
@@ -345,6 +354,10 @@ Compiled glsl_compile(Stage stage, std::string_view text, const Options& options
     Compiled out;
     if (text.size() > (size_t{1} << 30)) {
         out.messages.push_back({Severity::error, 0, "the preprocessed text is over 1 GiB"});
+        return out;
+    }
+    if (std::optional<ToolMessage> problem = too_deep(text)) {
+        out.messages.push_back(std::move(*problem));
         return out;
     }
     try {
