@@ -37,38 +37,43 @@ std::string number(double v) {
     return text;
 }
 
-// The inputs that draw something. The position is the first vertex input that can be one, until nothing is drawn with it.
+// Runs with the vertex input as position that covers most: the first that can be one where that covers a quarter of the
+// picture, else every other in turn. `options` is left at the choice.
 Result<PipelineOutput> run_visible(Device& device, PipelineRequest& request, const CheckJob& job, InputOptions& options) {
-    const auto attempt = [&] {
+    const auto attempt = [&](const InputOptions& with) {
+        InputOptions o = with;
         request.inputs.clear();
         for (const Mood mood : {Mood::ordinary, Mood::mixed}) {
-            options.mood = mood;
-            request.inputs.push_back(make_inputs(request.stages, options));
+            o.mood = mood;
+            request.inputs.push_back(make_inputs(request.stages, o));
         }
         return device.run(request);
     };
-    const auto drew = [](const Result<PipelineOutput>& r) {
-        return !r.ok() || r->runs.empty() || r->runs.front().covered != 0 || !r->errors.empty();
-    };
+    const auto final = [](const Result<PipelineOutput>& r) { return !r.ok() || r->runs.empty() || !r->errors.empty(); };
     options.seed = job.seed;
-    Result<PipelineOutput> first = attempt();
-    if (drew(first)) return first;
+    Result<PipelineOutput> best = attempt(options);
+    if (request.stages.empty() || request.stages.front().stage != Stage::vertex || request.stages.front().partner) return best;
+    std::vector<InputOptions> others;
     const std::vector<std::string> candidates = position_candidates(request.stages);
     for (size_t i = 1; i < candidates.size(); ++i) {
-        options.position = candidates[i];
-        Result<PipelineOutput> again = attempt();
-        if (drew(again)) return again;
+        others.push_back(options);
+        others.back().position = candidates[i];
     }
-    options.position.clear();
-    if (candidates.empty()) {  // positions out of gl_VertexIndex: strips and lists of other lengths
+    if (candidates.empty())  // positions out of gl_VertexIndex: strips and lists of other lengths
         for (const uint32_t vertices : {6u, 36u}) {
-            options.vertices = vertices;
-            Result<PipelineOutput> again = attempt();
-            if (drew(again)) return again;
+            others.push_back(options);
+            others.back().vertices = vertices;
         }
-        options.vertices = 0;
+    const uint64_t enough = uint64_t{job.size} * job.size / 4;
+    for (const InputOptions& other : others) {
+        if (final(best) || best->runs.front().covered >= enough) break;
+        Result<PipelineOutput> again = attempt(other);
+        if (final(again) || again->runs.front().covered > best->runs.front().covered) {
+            best = std::move(again);
+            options = other;
+        }
     }
-    return first;
+    return best;
 }
 
 void judge_difference(const ReadBack& a, const ReadBack& b, Mood mood, Verdict& v) {

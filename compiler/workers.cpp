@@ -31,6 +31,16 @@ namespace kiln {
 
 namespace {
 
+// Address sanitizer reserves terabytes.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define KILN_SANITIZED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define KILN_SANITIZED
+#endif
+#endif
+
+constexpr rlim_t worker_memory = rlim_t{8} << 30;
 constexpr uint64_t frame_limit = uint64_t{256} << 20;
 constexpr uint8_t kind_error = 0, kind_info = 1, kind_verdict = 2;
 
@@ -316,6 +326,10 @@ int run_worker(const std::function<Result<std::unique_ptr<Device>>()>& open) {
     signal(SIGINT, SIG_IGN);           // the terminal's Ctrl-C reaches us too; the parent decides
     const rlimit none{0, 0};
     setrlimit(RLIMIT_CORE, &none);
+#if !defined(KILN_SANITIZED)
+    const rlimit memory{worker_memory, worker_memory};  // what runs away fails in its own process, not in its neighbours
+    setrlimit(RLIMIT_AS, &memory);
+#endif
     const int socket = fcntl(0, F_DUPFD_CLOEXEC, 3);
     if (socket < 0) return static_cast<int>(Fault::environment);
     Result<std::unique_ptr<Device>> device = open();

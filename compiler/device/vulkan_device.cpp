@@ -6,8 +6,11 @@
 
 #include <chrono>
 #include <cstring>
+#include <map>
 
+#include "compiler/base/digest.h"
 #include "compiler/device/bind.h"
+#include "compiler/spirv.h"
 
 namespace kiln {
 
@@ -59,7 +62,9 @@ private:
     VkFramebuffer make_framebuffer(const PipelineRequest& request, const Pipeline& pipeline, const Bound& bound,
                                    std::vector<Copy>& copies, std::vector<Image*>& attachments);
     void record_read(const Bound& bound, std::vector<Copy>& copies);
+    const std::string& invalid(const Words& words);
 
+    std::map<Fast, std::string> validated_;
     std::unique_ptr<Context> context_;
     Arena arena_;
     Images images_;
@@ -233,6 +238,20 @@ bool VulkanDevice::draw(const PipelineRequest& request, const Pipeline& pipeline
     return good;
 }
 
+// What spirv-val has against the words, once for each module; for the Vulkan version that their SPIR-V version came with.
+const std::string& VulkanDevice::invalid(const Words& words) {
+    const Fast name = xxh3(as_bytes(WordView(words)));
+    const auto known = validated_.find(name);
+    if (known != validated_.end()) return known->second;
+    const uint32_t version = words.size() > 1 ? words[1] : 0;
+    Options options;
+    options.vulkan = version >= 0x10600 ? 0x103 : version >= 0x10400 ? 0x102 : 0x101;
+    std::string why;
+    for (const ToolMessage& m : spirv_validate(words, options))
+        if (m.severity == Severity::error && why.empty()) why = m.text.empty() ? "invalid" : m.text;
+    return validated_[name] = why;
+}
+
 Result<PipelineOutput> VulkanDevice::run(const PipelineRequest& request) {
     Context& vk = *context_;
     vk.messages.clear();
@@ -240,6 +259,12 @@ Result<PipelineOutput> VulkanDevice::run(const PipelineRequest& request) {
     PipelineOutput out;
     Pipeline pipeline;
     const double start = now_ms();
+    // The layer walks a module's words before it validates them, so what it gets must be valid already.
+    for (const StageCode& s : request.stages)
+        if (const std::string why = invalid(s.words); !why.empty()) {
+            out.errors.push_back(std::string("spirv-val, ") + name_of(s.stage) + " stage: " + why);
+            return out;
+        }
     make_pipeline(vk, request, pipeline, out.unsupported);
     out.create_ms = now_ms() - start;
     if (out.unsupported.empty() && !vk.failed() && vk.messages.empty())

@@ -114,7 +114,7 @@ void main() {
     c = vec4(texture(t1, uv.x).r, texelFetch(tm, ivec2(3), 1).r, texture(tca, vec4(uv, 0.5, 1.0)).r,
              texture(sampler2D(image, smooth_sampler), uv).r);
     d = vec4(texture(sampler2DShadow(depth_image, compare_sampler), vec3(uv, 0.3)) + 0.1, texelFetch(texels, 5).r,
-             imageLoad(picture, ivec2(gl_FragCoord.xy)).r, texture(several[block.i], uv).r);
+             imageLoad(picture, ivec2(gl_FragCoord.xy)).r, texture(several[2], uv).r);
     a *= block.f * length(block.v) * block.m[1][1] * block.list[2] * push.tint.x;
     b *= source.head.x * source.tail[3];
     if (ivec2(gl_FragCoord.xy) == ivec2(32, 32)) {

@@ -18,18 +18,15 @@ StageCode good(int number) {
     return fragment("layout(location = 0) out vec4 c;\nvoid main() { c = vec4(" + std::to_string(number) + ".0); }\n");
 }
 
-// Writes far outside a local array: the driver's own code faults.
+// A local array far larger than a stack: the driver's own code faults.
 StageCode crash() {
     return fragment(R"(
-layout(set = 0, binding = 0) uniform B { float f; } b;
+layout(set = 0, binding = 0) uniform B { int i; } b;
 layout(location = 0) out vec4 c;
 void main() {
-    float list[64];
-    for (int i = 0; i < 64; ++i) list[i] = float(i);
-    int far = floatBitsToInt(b.f) / 2;
-    list[far] = 1.0;
-    list[far / 3] += 2.0;
-    c = vec4(list[far / 7], list[int(gl_FragCoord.x)], 0.0, 1.0);
+    float list[262144];
+    list[int(gl_FragCoord.y) * b.i] = 1.0;
+    c = vec4(list[int(gl_FragCoord.x) + b.i], list[b.i * 7], 0.0, 1.0);
 }
 )");
 }
@@ -46,7 +43,7 @@ void main() {
 }
 
 TEST(Isolation, CrashAndHangNameThemselvesAndTheRestGoesOn) {
-    Result<std::unique_ptr<WorkerPool>> pool = WorkerPool::start(workers(2, 8));
+    Result<std::unique_ptr<WorkerPool>> pool = WorkerPool::start(workers(2, 15));
     ASSERT_TRUE(pool.ok()) << pool.error().message;
     EXPECT_NE((*pool)->info().name.find("llvmpipe"), std::string::npos);
     std::vector<CheckJob> jobs;
