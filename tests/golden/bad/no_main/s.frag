@@ -1,0 +1,4 @@
+#version 450
+#if A
+void main() {}
+#endif
