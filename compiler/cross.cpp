@@ -19,7 +19,21 @@ struct ContextEnd {
 };
 using Context = std::unique_ptr<spvc_context_s, ContextEnd>;
 
-Translated refused(std::string why) {
+// The library's words without its ids, which differ from variant to variant, and without advice that nobody here can take.
+std::string clean(std::string why) {
+    for (size_t at = why.find(" ID "); at != std::string::npos; at = why.find(" ID ", at)) {
+        size_t end = at + 4;
+        while (end < why.size() && why[end] >= '0' && why[end] <= '9') ++end;
+        why.erase(at, end - at);
+    }
+    const size_t advice = why.find(" You can try");
+    if (advice != std::string::npos) why.erase(advice);
+    while (!why.empty() && (why.back() == '\n' || why.back() == '.')) why.pop_back();
+    return why;
+}
+
+Translated refused(const std::string& reason) {
+    std::string why = clean(reason);
     if (why.empty()) why = "SPIRV-Cross failed without a reason";
     return {{}, std::move(why)};
 }
@@ -30,8 +44,10 @@ public:
     Translation(spvc_context context, spvc_compiler compiler, Target target, const ir::View& view)
         : context_(context), compiler_(compiler), target_(target), language_(language_of(target)), view_(view) {}
 
-    Translated run(const Edits& edits) {
-        if (!set_options() || !combine(edits)) return last_error();
+    Translated run(const Edits& edits, bool corrects_depth) {
+        if (!set_options(corrects_depth) || !combine(edits)) return last_error();
+        for (const char* extension : edits.extensions)
+            if (!ok(spvc_compiler_require_extension(compiler_, extension))) return last_error();
         apply(edits);
         if (!bind(edits)) return last_error();
         const char* text = nullptr;
@@ -44,7 +60,7 @@ private:
     Translated last_error() const { return refused(spvc_context_get_last_error_string(context_)); }
     bool is_gl() const { return language_ == Language::glsl || language_ == Language::essl; }
 
-    bool set_options() {
+    bool set_options(bool corrects_depth) {
         spvc_compiler_options o = nullptr;
         if (!ok(spvc_compiler_create_compiler_options(compiler_, &o))) return false;
         bool good = true;
@@ -61,7 +77,7 @@ private:
             flag(SPVC_COMPILER_OPTION_GLSL_ES, es);
             flag(SPVC_COMPILER_OPTION_GLSL_EMIT_PUSH_CONSTANT_AS_UNIFORM_BUFFER, true);
             flag(SPVC_COMPILER_OPTION_GLSL_ENABLE_420PACK_EXTENSION, false);
-            flag(SPVC_COMPILER_OPTION_FIXUP_DEPTH_CONVENTION, true);
+            flag(SPVC_COMPILER_OPTION_FIXUP_DEPTH_CONVENTION, corrects_depth);
             // Draw calls with a base instance came with GL 4.2; before, the term would be a uniform that nobody sets.
             flag(SPVC_COMPILER_OPTION_GLSL_SUPPORT_NONZERO_BASE_INSTANCE, target_ == Target::glsl450);
             flag(SPVC_COMPILER_OPTION_GLSL_FORCE_FLATTENED_IO_BLOCKS, target_ != Target::glsl450);
@@ -105,6 +121,10 @@ private:
         for (const Edits::MemberName& m : edits.member_names)
             spvc_compiler_set_member_name(compiler_, m.type, m.member, m.name.c_str());
         if (!is_gl()) return;
+        // Promises about the direction in which depth moves; GLSL before 4.20 and ESSL have no words for them, and need none.
+        if (target_ != Target::glsl450)
+            for (const auto mode : {SpvExecutionModeDepthGreater, SpvExecutionModeDepthLess, SpvExecutionModeDepthUnchanged})
+                spvc_compiler_unset_execution_mode(compiler_, mode);
         for (const uint32_t id : edits.flat) spvc_compiler_set_decoration(compiler_, id, SpvDecorationFlat, 1);
         for (const auto& [id, number] : edits.bindings) {
             spvc_compiler_unset_decoration(compiler_, id, SpvDecorationDescriptorSet);
@@ -180,15 +200,16 @@ std::vector<Translated> cross_translate(WordView words, const std::vector<Target
     const Result<Reflected> reflected = reflect_view(*view);
     if (!reflected) return refuse_all(reflected.error().message);
 
-    // Known refusals first, so that the last target left can take the parsed tree.
+    const Features features = find_features(*view, *reflected);
     std::vector<size_t> todo;
     std::vector<Edits> edits(targets.size());
     for (size_t i = 0; i < targets.size(); ++i) {
-        std::string why = targets[i] == Target::spirv ? "SPIR-V is not translated" : target_limit(*view, *reflected, targets[i]);
+        std::string why = targets[i] == Target::spirv ? "SPIR-V is not translated"
+                                                      : target_limit(features, reflected->reflection.stage, targets[i]);
         if (why.empty()) {
             Result<Edits> plan = plan_edits(*view, *reflected, targets[i], slots);
             if (plan)
-                edits[i] = std::move(*plan);
+                edits[i] = std::move(*plan), edits[i].extensions = target_extensions(features, targets[i]);
             else
                 why = plan.error().message;
         }
@@ -210,7 +231,7 @@ std::vector<Translated> cross_translate(WordView words, const std::vector<Target
                 SPVC_SUCCESS)
             out[i] = refused(spvc_context_get_last_error_string(raw));
         else
-            out[i] = Translation(raw, compiler, targets[i], *view).run(edits[i]);
+            out[i] = Translation(raw, compiler, targets[i], *view).run(edits[i], slots.rasterised == reflected->reflection.stage);
         spvc_context_release_allocations(raw);
     }
     return out;

@@ -28,7 +28,8 @@ struct Edits {
     std::vector<uint32_t> flat;                           // variables that become flat
     std::vector<Slot> slots;                              // of this module's resources, for HLSL and MSL
     std::vector<std::pair<uint32_t, Slot>> by_variable;
-    bool separate = false;  // has images or samplers that are not combined
+    std::vector<const char*> extensions;  // to be asked for
+    bool separate = false;                // has images or samplers that are not combined
 
     const Slot* slot_of(uint32_t variable) const;  // nullptr: none
 };

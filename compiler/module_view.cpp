@@ -21,12 +21,6 @@ const std::string& View::member_name(uint32_t type_id, uint32_t member) const {
     return member < all.size() ? all[member] : empty;
 }
 
-bool View::has_capability(uint32_t capability) const {
-    for (const uint32_t c : capabilities)
-        if (c == capability) return true;
-    return false;
-}
-
 namespace {
 
 constexpr uint32_t max_members = 16383;  // of a structure, the universal limit
@@ -176,7 +170,11 @@ private:
                 view_.extensions.push_back(text(w, 1));
                 return;
             case op_ext_inst_import:
-                if (has(3) && text(w, 2) == "GLSL.std.450") view_.glsl_set = w[1];
+                if (has(3)) {
+                    const std::string set = text(w, 2);
+                    if (set == "GLSL.std.450") view_.glsl_set = w[1];
+                    if (set == "NonSemantic.DebugPrintf") view_.imports_debug_printf = true;
+                }
                 return;
             case op_entry_point: {
                 if (!has(4)) return;
@@ -191,6 +189,7 @@ private:
             case op_execution_mode:
                 if (!has(3)) return;
                 if (w[2] == mode_depth_replacing) view_.depth_replacing = true;
+                if (w[2] == mode_early_fragment_tests) view_.early_tests = true;
                 if (w[2] == mode_local_size && has(6)) view_.workgroup = {w[3], w[4], w[5]};
                 return;
             case op_name:

@@ -97,7 +97,8 @@ public:
     std::vector<std::string> extensions;
     uint32_t glsl_set = 0;  // id of the GLSL.std.450 import, 0 when absent
     std::array<uint32_t, 3> workgroup{0, 0, 0};
-    bool depth_replacing = false;
+    bool depth_replacing = false, early_tests = false;
+    bool imports_debug_printf = false;
     std::vector<Variable> variables;  // at module scope, in order
     std::vector<Instruction> body;    // every instruction from the first OpFunction on
 
@@ -110,7 +111,11 @@ public:
     const std::string& member_name(uint32_t type_id, uint32_t member) const;
     uint32_t word(const Instruction& i, uint32_t n) const { return n < length(i) ? words[i.at + n] : 0; }
     uint32_t length(const Instruction& i) const { return words[i.at] >> 16; }
-    bool has_capability(uint32_t capability) const;
+    template <class Visit>
+    void each_type(const Visit& visit) const {
+        for (const Global& g : globals_)
+            if (g.type.kind != Kind::other) visit(g.type);
+    }
 
 private:
     friend class Reader;

@@ -2,8 +2,10 @@
 // resource has one number in every variant. Each target counts in its own spaces; each space is dense, because the limits
 // are low (4 storage blocks in ESSL 310, 16 Metal samplers).
 //
-// Two things need care. HLSL's u registers share a space with render targets in shader model 5.0, so they start after the
-// fragment outputs. And an array sized at run time comes last in its spaces, since nothing can follow it.
+// Three things need care. Metal before 3.1 has no atomics on textures: SPIRV-Cross lets them work on the buffer behind the
+// image, which is a second argument, so such images get a buffer number as well. HLSL's u registers share a space with render
+// targets in shader model 5.0, so they start after the fragment outputs. And an array sized at run time comes last in its spaces,
+// since nothing can follow it.
 
 #include <algorithm>
 #include <map>
@@ -19,6 +21,7 @@ struct Entry {
     std::string name;
     uint64_t count = 1;
     bool unsized = false;
+    bool atomic = false;  // an image that atomics may reach
 };
 
 using Key = std::tuple<bool, uint32_t, uint32_t, ResourceKind>;  // push constants last
@@ -89,6 +92,8 @@ std::map<Key, Entry> unite(const std::vector<const Reflection*>& modules) {
                 count = std::min<uint64_t>(count * std::max(length, 1U), 0xffff);
             }
             e.count = std::max(e.count, count);
+            constexpr uint32_t r32i = 24, r32ui = 33;
+            e.atomic |= r.format == r32i || r.format == r32ui;
         }
     return all;
 }
@@ -108,6 +113,9 @@ SlotLayout assign_slots(const std::vector<const Reflection*>& modules) {
     }
 
     SlotLayout out;
+    for (const Reflection* m : modules)
+        for (const Stage stage : {Stage::tess_evaluation, Stage::geometry, Stage::mesh})
+            if (m->stage == stage) out.rasterised = std::max(out.rasterised, stage);
     std::set<std::string> names;
     for (const auto& [key, entry] : all) {
         Slot s;
@@ -122,7 +130,11 @@ SlotLayout assign_slots(const std::vector<const Reflection*>& modules) {
     for (const bool unsized : {false, true}) {
         auto slot = out.slots.begin();
         for (const auto& [key, entry] : all) {
-            if (entry.unsized == unsized) number(*slot, static_cast<uint32_t>(entry.count), counters);
+            const auto count = static_cast<uint32_t>(entry.count);
+            if (entry.unsized == unsized) {
+                number(*slot, count, counters);
+                if (entry.atomic) slot->metal_buffer = take(counters.metal_buffer, count);
+            }
             ++slot;
         }
     }

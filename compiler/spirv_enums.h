@@ -79,10 +79,16 @@ enum Opcode : uint16_t {
     op_bit_field_u_extract = 203,
     op_bit_reverse = 204,
     op_bit_count = 205,
+    op_dpdx_fine = 210,
+    op_fwidth_coarse = 215,
+    op_atomic_load = 227,
+    op_atomic_store = 228,
+    op_atomic_xor = 242,
     op_kill = 252,
     op_terminate_invocation = 4416,
     op_type_acceleration_structure = 5341,
     op_demote = 5380,
+    op_is_helper_invocation = 5381,
 };
 
 enum Decoration : uint32_t {
@@ -119,9 +125,28 @@ enum StorageClass : uint32_t {
     sc_storage_buffer = 12,
 };
 
-enum ExecutionMode : uint32_t { mode_depth_replacing = 12, mode_local_size = 17 };
+enum ExecutionMode : uint32_t {
+    mode_early_fragment_tests = 9,
+    mode_depth_replacing = 12,
+    mode_local_size = 17,
+};
 
-enum BuiltIn : uint32_t { builtin_workgroup_size = 25 };
+enum BuiltIn : uint32_t {
+    builtin_clip_distance = 3,
+    builtin_cull_distance = 4,
+    builtin_primitive_id = 7,
+    builtin_layer = 9,
+    builtin_viewport_index = 10,
+    builtin_sample_id = 18,
+    builtin_sample_position = 19,
+    builtin_sample_mask = 20,
+    builtin_helper_invocation = 23,
+    builtin_num_workgroups = 24,
+    builtin_workgroup_size = 25,
+    builtin_base_vertex = 4424,
+    builtin_base_instance = 4425,
+    builtin_draw_index = 4426,
+};
 
 enum Dim : uint32_t { dim_1d = 0, dim_2d = 1, dim_3d = 2, dim_cube = 3, dim_rect = 4, dim_buffer = 5, dim_subpass = 6 };
 

@@ -47,7 +47,8 @@ struct Slot {
 };
 
 struct SlotLayout {
-    std::vector<Slot> slots;  // by set, binding, kind; push constants last with set = binding = ~0u
+    std::vector<Slot> slots;           // by set, binding, kind; push constants last with set = binding = ~0u
+    Stage rasterised = Stage::vertex;  // the shader's last stage before the rasteriser: in GL it converts depth
     friend bool operator==(const SlotLayout&, const SlotLayout&) = default;
 };
 

@@ -19,6 +19,7 @@ Digest read_digest(WireReader& in) {
 
 Bytes write_slots(const SlotLayout& layout) {
     WireWriter out;
+    out.u8(static_cast<uint8_t>(layout.rasterised));
     for (const Slot& s : layout.slots) {
         out.u8(static_cast<uint8_t>(s.kind));
         out.text(s.name);
