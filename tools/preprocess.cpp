@@ -11,8 +11,9 @@ namespace kiln {
 
 namespace {
 
-// One source line a line, tokens apart by one space; a directive keeps a line of its own, and #line says where a jump lands.
-std::string laid_out(const Split& split, const Class& c) {
+// One source line a line, tokens apart by one space; a directive keeps a line of its own, and #line says where a jump lands:
+// the line and the number of the file, 0 for the stage's own.
+std::string laid_out(const Class& c) {
     std::string out;
     size_t begin = 0, index = 0;
     TextPlace last;
@@ -31,8 +32,8 @@ std::string laid_out(const Split& split, const Class& c) {
             if (!out.empty() && out.back() != '\n') out += '\n';
             const bool version = directive && token.compare(0, 8, "#version") == 0;
             const bool jump = place.file != last.file || place.line != last.line + 1;
-            if (jump && !version && token.compare(0, 5, "#line") != 0 && place.file < split.files.size())
-                out += "#line " + std::to_string(place.line) + " \"" + split.files[place.file] + "\"\n";
+            if (jump && !version && token.compare(0, 5, "#line") != 0 && place.line != 0)
+                out += "#line " + std::to_string(place.line) + " " + std::to_string(place.file) + "\n";
         }
         out += token;
         fresh = directive;
@@ -90,7 +91,7 @@ int run_preprocess(const Args& args) {
             if (!(*selection)[axis]) missing += (missing.empty() ? "" : ", ") + space.axes[axis].name;
         return print_error({Fault::usage, "these values leave several classes; say more of: " + missing});
     }
-    const std::string text = laid_out(split, *found);
+    const std::string text = laid_out(*found);
     if (!args.has("--json")) return finish(text);
     Json json;
     json.object().text("shader", space.shader).text("stage", name_of(stages.front()->stage));
