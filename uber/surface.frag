@@ -29,6 +29,7 @@ void main() {
 #include "lib/math.glsl"
 #include "lib/vectors.glsl"
 #include "lib/materials.glsl"
+#include "lib/octahedral.glsl"
 #include "lib/blinn_phong.glsl"
 #include "lib/cook_torrance.glsl"
 #include "lib/lights.glsl"

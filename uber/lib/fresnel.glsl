@@ -3,16 +3,24 @@
 // Fresnel reflectance.
 #include "math.glsl"
 
+// Reflectance at grazing incidence: 1, but for a specular colour below 2 %, which is no real dielectric and means "no
+// highlight": it fades to 0 with f0. Lagarde and de Rousiers 2014. f0: [0, 1].
+float fresnel_f90(vec3 f0) {
+    return saturate(50.0 * dot(f0, vec3(0.33)));
+}
+
 // Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", 1994: f0 + (f90 - f0) (1 - cos)^5, the power by
-// multiplication. A specular colour below 2 % is no real dielectric and means "no highlight": f90 falls with it there
-// (Lagarde and de Rousiers 2014, f90 = sat(50 dot(f0, 0.33))).
-// v_dot_h: cosine between view and half vector, limited to [0, 1] here; f0: reflectance at normal incidence, [0, 1].
-// Returns values in [min(f0, f90), max(f0, f90)].
-vec3 fresnel_schlick(float v_dot_h, vec3 f0) {
-    const float f90 = saturate(50.0 * dot(f0, vec3(0.33)));
-    const float x = 1.0 - saturate(v_dot_h);
+// multiplication. cosine: between direction and (half) normal, limited to [0, 1] here; f0: reflectance at normal
+// incidence, [0, 1]. Returns values in [min(f0, f90), max(f0, f90)].
+vec3 fresnel_schlick(float cosine, vec3 f0) {
+    const float x = 1.0 - saturate(cosine);
     const float x2 = x * x;
-    return f0 + (vec3(f90) - f0) * (x2 * x2 * x);
+    return f0 + (vec3(fresnel_f90(f0)) - f0) * (x2 * x2 * x);
+}
+
+// The cosine-weighted mean of fresnel_schlick over the hemisphere: 2 integral of (1 - m)^5 m dm = 1/21. f0: [0, 1].
+vec3 fresnel_average(vec3 f0) {
+    return f0 + (vec3(fresnel_f90(f0)) - f0) / 21.0;
 }
 
 #endif

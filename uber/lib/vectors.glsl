@@ -19,12 +19,4 @@ vec3 transform_normal(mat3 m, vec3 n) {
     return dot(m[0], c0) < 0.0 ? -transformed : transformed;
 }
 
-// A unit vector folded onto the octahedron and unfolded into the square [-1, 1]^2.
-// Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 3(2), 2014.
-vec2 encode_octahedral(vec3 n) {
-    const vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
-    const vec2 folded = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
-    return n.z >= 0.0 ? p : folded;
-}
-
 #endif

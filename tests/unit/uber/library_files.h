@@ -1,0 +1,13 @@
+// Every file of uber/lib. No include guard: see library.h.
+#include "uber/lib/blinn_phong.glsl"
+#include "uber/lib/cook_torrance.glsl"
+#include "uber/lib/fresnel.glsl"
+#include "uber/lib/ggx.glsl"
+#include "uber/lib/lights.glsl"
+#include "uber/lib/materials.glsl"
+#include "uber/lib/math.glsl"
+#include "uber/lib/motion.glsl"
+#include "uber/lib/octahedral.glsl"
+#include "uber/lib/sh_lightmap.glsl"
+#include "uber/lib/shadow_map.glsl"
+#include "uber/lib/vectors.glsl"
