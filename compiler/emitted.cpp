@@ -161,6 +161,8 @@ std::vector<Emitted::Group> Emitted::refine(const Sequence& sequence, Set set, s
                 next.push_back({part, concat(g.rope, alternative.rope)});
                 rest = part == rest ? Diagram::none() : diagram_.minus(rest, part);
             }
+            // Variants that a mistake stopped emit nothing more.
+            if (rest != Diagram::none()) next.push_back({rest, g.rope});
             if (next.size() > limit) break;
         }
         join_equal(next);

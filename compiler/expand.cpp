@@ -421,6 +421,7 @@ bool Expander::expand_argument(const std::vector<Token>& argument, std::vector<T
             if (result != Result::not_expanded) continue;
         }
         if (token.kind == Tok::marker || token.kind == Tok::end) break;
+        token.flags &= static_cast<uint8_t>(~Token::from_body);
         out.push_back(token);
     }
     --depth_;

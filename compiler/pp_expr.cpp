@@ -197,6 +197,12 @@ private:
         Token token = expander_.scan();
         const bool parenthesis = token.kind == Tok::op && token.text == spelling::paren_open;
         if (parenthesis) token = expander_.scan();
+        if (token.kind == Tok::symbol && e_.symbols_[token.text].several) {
+            // Expanded as a macro argument; where the name is not defined it is still a name.
+            e_.inner_ = {Disagreement::macro, e_.symbols_[token.text].name};
+            failed_ = true;
+            return token;
+        }
         if (token.kind != Tok::identifier) return fail(name, "'defined' : expected an identifier", value);
         const Set where = pp_.macros.defined_in(token.text, set_);
         e_.note_definition_read(token.text, set_);
@@ -303,6 +309,8 @@ bool Evaluator::symbol_for(Token& token, Set set, size_t depth) {
         if (depth + depth_ > Preprocessing::max_depth || !can_stand_for_text(name, 0)) return false;
         Symbol symbol;
         const std::vector<Macros::Meaning> meanings = pp_.macros.split(name, set);
+        symbol.name = name;
+        symbol.several = meanings.size() > 1;
         if (const auto axis = pp_.axis_of_macro.find(name); axis != pp_.axis_of_macro.end()) pp_.axes_read[axis->second] = true;
         std::vector<Guarded::Part> parts;
         for (const Macros::Meaning& m : meanings) {

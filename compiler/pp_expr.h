@@ -39,6 +39,8 @@ private:
         Set set;
     };
     struct Symbol {
+        uint32_t name = 0;
+        bool several = false;  // the name has several meanings
         Guarded value;
         std::vector<Undefined> undefined;
     };

@@ -87,7 +87,18 @@ std::string messages(const Split& split) {
     return out;
 }
 
-void expect_like_oracle(const TestShader& shader, const std::string& note) {
+namespace {
+
+// The same stage with nothing but one variant needed.
+Split split_alone(SplitTest& test, const Digits& digits) {
+    const Shader& shader = test.manifest.shaders.front();
+    return split_stage(test.manifest, shader, shader.stages.front(), *test.space, test.space->diagram->point(digits), test.files,
+                       {});
+}
+
+}  // namespace
+
+bool expect_like_oracle(const TestShader& shader, const std::string& note) {
     const auto test = run_split(shader);
     const Space& space = *test->space;
     std::map<std::vector<std::string>, std::set<size_t>> streams;  // oracle stream -> our classes
@@ -95,8 +106,7 @@ void expect_like_oracle(const TestShader& shader, const std::string& note) {
     std::string all;
     for (const auto& [name, text] : shader.files) all += "--- " + name + "\n" + text;
     const std::string ours = messages(test->split);
-    size_t failures = 0;
-    bool any_oracle_error = false;
+    bool agreed = true, errors = false;
     space.diagram->enumerate(space.legal, [&](const Digits& digits) {
         std::string preamble;
         for (const auto& [name, body] : shader.defines) preamble += "#define " + name + " " + body + "\n";
@@ -106,30 +116,39 @@ void expect_like_oracle(const TestShader& shader, const std::string& note) {
             preamble += "#define " + space.axes[a].macro + " " + std::to_string(value.number) + "\n";
         }
         const oracle::Answer answer = oracle::preprocess(shader.stage, shader.files, "main", preamble);
+        errors = errors || !answer.ok;
+        const std::string where =
+            note + space.describe_variant(digits) + "\n" + ours + all + "--- oracle\n" + answer.log + answer.text;
         if (!answer.ok) {
-            any_oracle_error = true;
-            return true;
+            EXPECT_FALSE(ours.empty()) << where;
         }
-        if (test->split.diags.has_errors()) return true;
+        if (!ours.empty()) {
+            // Some variant has an error: this one by itself must have one just where the oracle has.
+            const std::string alone = messages(split_alone(*test, digits));
+            EXPECT_EQ(alone.empty(), answer.ok) << where << "--- alone\n" << alone;
+            agreed = agreed && alone.empty() == answer.ok;
+        }
+        if (!agreed || !answer.ok) return agreed;
         size_t index = 0;
         while (index < test->split.classes.size() && !space.diagram->contains(test->split.classes[index].variants, digits))
             ++index;
         if (index == test->split.classes.size()) {
-            ADD_FAILURE() << note << "no class for " << space.describe_variant(digits) << "\n" << all;
-            return false;
+            ADD_FAILURE() << "no class: " << where;
+            return agreed = false;
         }
         const auto want = tokens_of(answer.text), got = tokens_of(test->split.classes[index].text);
-        EXPECT_EQ(got, want) << note << space.describe_variant(digits) << "\n" << all << "--- oracle\n" << answer.text;
-        if (got != want && ++failures >= 1) return false;
+        EXPECT_EQ(got, want) << where;
+        agreed = got == want;
         streams[want].insert(index);
         of_class[index].insert(want);
-        return true;
+        return agreed;
     });
-    EXPECT_EQ(!ours.empty(), any_oracle_error) << note << ours << "\n" << all;
-    if (!ours.empty() || any_oracle_error || failures != 0) return;
+    EXPECT_EQ(!ours.empty(), errors) << note << ours << all;
+    if (!agreed || errors) return false;
     EXPECT_EQ(streams.size(), test->split.classes.size()) << note << all;
     for (const auto& [stream, classes] : streams) EXPECT_EQ(classes.size(), 1u) << note << all;
     for (const auto& [index, distinct] : of_class) EXPECT_EQ(distinct.size(), 1u) << note << all;
     for (const Class& c : test->split.classes)
         EXPECT_EQ(c.places.size(), static_cast<size_t>(std::count(c.text.begin(), c.text.end(), '\n'))) << note;
+    return true;
 }
