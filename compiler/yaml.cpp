@@ -63,7 +63,7 @@ bool is_rule(std::string_view line) {
 
 // The library's messages in terms of what to change.
 std::string plain_words(const std::string& message) {
-    static constexpr std::pair<const char*, const char*> table[] = {
+    static const std::pair<const char*, const char*> table[] = {
         {YAML::ErrorMsg::END_OF_MAP, "expected a key here: check the indentation, or quote text that goes on over lines"},
         {YAML::ErrorMsg::END_OF_MAP_FLOW, "expected ',' or '}' here; text that holds braces, brackets or commas needs quotes"},
         {YAML::ErrorMsg::END_OF_SEQ, "expected '- ' here: check the indentation"},

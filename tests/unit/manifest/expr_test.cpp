@@ -9,7 +9,7 @@
 namespace kiln {
 namespace {
 
-Axis axis(const std::string& name, AxisKind kind, std::vector<AxisValue> values) {
+Axis make_axis(const std::string& name, AxisKind kind, std::vector<AxisValue> values) {
     Axis a;
     a.name = name;
     a.macro = name;
@@ -20,11 +20,11 @@ Axis axis(const std::string& name, AxisKind kind, std::vector<AxisValue> values)
 
 const std::vector<Axis>& axes() {
     static const std::vector<Axis> all{
-        axis("light", AxisKind::named, {{"none", 0}, {"directional", 1}, {"point", 2}, {"spot", 3}}),
-        axis("cascades", AxisKind::integer, {{"1", 1}, {"2", 2}, {"4", 4}}),
-        axis("lightmap", AxisKind::named, {{"none", 0}, {"flat", 1}, {"light", 4}, {"in", -5}, {"not", 6}}),
-        axis("two_sided", AxisKind::boolean, {{"false", 0}, {"true", 1}}),
-        axis("skinned", AxisKind::defined, {{"false", 0}, {"true", 1}}),
+        make_axis("light", AxisKind::named, {{"none", 0}, {"directional", 1}, {"point", 2}, {"spot", 3}}),
+        make_axis("cascades", AxisKind::integer, {{"1", 1}, {"2", 2}, {"4", 4}}),
+        make_axis("lightmap", AxisKind::named, {{"none", 0}, {"flat", 1}, {"light", 4}, {"in", -5}, {"not", 6}}),
+        make_axis("two_sided", AxisKind::boolean, {{"false", 0}, {"true", 1}}),
+        make_axis("skinned", AxisKind::defined, {{"false", 0}, {"true", 1}}),
     };
     return all;
 }
@@ -191,7 +191,7 @@ TEST(Expr, Limits) {
 TEST(Expr, NamesPastTheIndexThreshold) {
     std::vector<Axis> many;
     for (int i = 0; i < 300; ++i) {
-        many.push_back(axis("axis" + std::to_string(i), AxisKind::named, {}));
+        many.push_back(make_axis("axis" + std::to_string(i), AxisKind::named, {}));
         for (int j = 0; j < 100; ++j) many.back().values.push_back({"v" + std::to_string(j), j * 7});
     }
     std::string text = "0";
@@ -319,9 +319,9 @@ int walk(const Tree& t, const std::vector<int32_t>& numbers) {
 
 TEST(Expr, AgreesWithTheOracleOnRandomTrees) {
     std::mt19937 random(20260131);  // the seed
-    const std::vector<Axis> three{axis("a", AxisKind::integer, {{"0", 0}, {"1", 1}, {"2", 2}}),
-                                  axis("b", AxisKind::integer, {{"-1", -1}, {"0", 0}, {"3", 3}}),
-                                  axis("c", AxisKind::boolean, {{"false", 0}, {"true", 1}})};
+    const std::vector<Axis> three{make_axis("a", AxisKind::integer, {{"0", 0}, {"1", 1}, {"2", 2}}),
+                                  make_axis("b", AxisKind::integer, {{"-1", -1}, {"0", 0}, {"3", 3}}),
+                                  make_axis("c", AxisKind::boolean, {{"false", 0}, {"true", 1}})};
     Writer writer(random);
     for (int round = 0; round < 20000; ++round) {
         const auto tree = writer.make(1 + round % 6);
