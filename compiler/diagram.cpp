@@ -17,6 +17,7 @@ namespace {
 constexpr size_t first_table = 1u << 8;
 constexpr size_t first_cache = 1u << 9;
 constexpr size_t most_cache = 1u << 21;  // entries; 32 MiB
+constexpr size_t edges_a_node = 8, least_edges = 1u << 20;
 constexpr size_t most_chunk = 1u << 17;  // edges; 1 MiB
 
 uint64_t mix(uint64_t v) {
@@ -45,6 +46,7 @@ bool same_edges(const Diagram::Edge* a, const Diagram::Edge* b, size_t count) {
 
 Diagram::Body::Body(std::vector<uint32_t> radices_, std::vector<uint32_t> order_, size_t node_limit)
     : radices(std::move(radices_)), order(std::move(order_)), limit(std::max<size_t>(node_limit, 2)) {
+    edge_limit = limit > SIZE_MAX / edges_a_node ? SIZE_MAX : std::max(limit * edges_a_node, least_edges);
     assert(order.size() == radices.size() && order.size() < 0xFFFF);
     level_of.assign(radices.size(), ~0u);
     for (uint32_t level = 0; level < order.size(); ++level) {
@@ -118,13 +120,14 @@ NodeId Diagram::Body::intern(uint32_t level, const Edge* edges, size_t count) {
         const Node& n = nodes[table_[i]];
         if (n.hash == hash && n.level == level && n.count == count && same_edges(n.edges, edges, count)) return table_[i];
     }
-    if (nodes.size() >= limit) exhausted = true;
+    if (nodes.size() >= limit || edges_made + count > edge_limit) exhausted = true;
     if (exhausted) return 0;
     Edge* kept = allocate(count);
     std::copy(edges, edges + count, kept);
     const NodeId id = static_cast<NodeId>(nodes.size());
     nodes.push_back({kept, hash, static_cast<uint16_t>(level), static_cast<uint16_t>(count)});
     table_[i] = id;
+    edges_made += count;
     if (nodes.size() * 2 > table_.size()) grow_table();
     return id;
 }

@@ -4,7 +4,8 @@
 //
 // A Diagram is over axes 0..n-1 with `radices[i]` digits each; `order` says which axis is tested at which level. Edges are
 // runs of neighbouring digits with one child, so an axis of thousands of values asked one question costs a few edges.
-// At most 65,534 axes and 65,535 digits an axis; nodes live as long as the diagram.
+// At most 65,534 axes and 65,535 digits an axis; nodes live as long as the diagram. The node limit bounds edges as well, at
+// eight a node (and never below a million).
 
 #include <cstdint>
 #include <functional>

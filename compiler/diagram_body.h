@@ -45,7 +45,8 @@ struct Diagram::Body {
     std::vector<uint32_t> level_of;        // of an axis
     std::vector<uint32_t> width;           // digits at a level
     std::vector<Node> nodes;
-    size_t limit;
+    size_t limit, edge_limit;
+    size_t edges_made = 0;
     bool exhausted = false;
     uint32_t levels() const { return static_cast<uint32_t>(order.size()); }
     static NodeId child(const Node& node, uint32_t digit);

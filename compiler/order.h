@@ -27,6 +27,7 @@ struct Reordered {
 
 // Rudell's sifting over these sets: each axis in turn is moved to the level where the sets take the fewest edges. Stops
 // after about `budget` edge visits; with a budget of 0 the order stays and only nodes that the sets do not use are dropped.
-Reordered sift(const Diagram& diagram, std::span<const Set> sets, size_t budget, size_t node_limit);
+// The old diagram is given up once its sets are copied, so that large ones are not held three times.
+Reordered sift(std::unique_ptr<Diagram> diagram, std::span<const Set> sets, size_t budget, size_t node_limit);
 
 }  // namespace kiln

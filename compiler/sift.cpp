@@ -277,10 +277,12 @@ private:
 
 }  // namespace
 
-Reordered sift(const Diagram& diagram, std::span<const Set> sets, size_t budget, size_t node_limit) {
-    Sifter sifter(diagram, sets, budget);
+Reordered sift(std::unique_ptr<Diagram> diagram, std::span<const Set> sets, size_t budget, size_t node_limit) {
+    Sifter sifter(*diagram, sets, budget);
+    const std::vector<uint32_t> radices = diagram->radices();
+    diagram.reset();
     if (budget != 0) sifter.run();
-    return sifter.write(diagram.radices(), node_limit);
+    return sifter.write(radices, node_limit);
 }
 
 }  // namespace kiln

@@ -14,8 +14,11 @@ namespace kiln {
 
 namespace {
 
-constexpr size_t first_sift = 4'096;      // live nodes at which the order is looked at again
-constexpr size_t final_budget = 400'000;  // edge visits; some ten milliseconds
+constexpr size_t first_sift = 4'096;  // live nodes at which the order is looked at again
+// Sifting is paid in edge visits, some 50 ns each.
+constexpr size_t final_budget = 400'000;
+constexpr size_t whole_budget = 40'000'000;  // of one space, while its rules are conjoined
+constexpr size_t visits_a_node = 16;
 
 struct Part {
     uint32_t rule = 0;
@@ -53,7 +56,8 @@ public:
             if (diagram_->nodes() < look_at) continue;
             const size_t live = diagram_->reachable({&legal_, 1}).size();
             if (live >= sift_at) {
-                reorder(64 * live);
+                reorder(std::min(visits_a_node * live, budget_));
+                budget_ -= std::min(visits_a_node * live, budget_);
                 sift_at = 2 * diagram_->nodes() + first_sift;
                 sort_parts(i + 1);
             } else if (diagram_->nodes() > 8 * live + look_at) {
@@ -62,7 +66,11 @@ public:
             look_at = 2 * diagram_->nodes() + first_sift;
         }
         const size_t live = diagram_->reachable({&legal_, 1}).size();
-        reorder(live > axes_.size() ? final_budget : 0);
+        constexpr size_t most_worth_sifting = 200'000;
+        if (live > axes_.size() && live < most_worth_sifting)
+            reorder(final_budget);
+        else if (diagram_->nodes() > 2 * live)
+            reorder(0);
         return {std::move(diagram_), legal_, true, made_};
     }
 
@@ -92,13 +100,13 @@ private:
                 legal_ = next;
                 return true;
             }
-            if (attempt == 0) reorder(std::max<size_t>(final_budget, 8 * diagram_->reachable({&legal_, 1}).size()));
+            if (attempt == 0) reorder(final_budget + budget_ / 2);
         }
         return false;
     }
 
     void reorder(size_t budget) {
-        Reordered r = sift(*diagram_, {&legal_, 1}, budget, limit_);
+        Reordered r = sift(std::move(diagram_), {&legal_, 1}, budget, limit_);
         diagram_ = std::move(r.diagram);
         legal_ = r.sets[0];
     }
@@ -111,6 +119,7 @@ private:
     std::unique_ptr<Diagram> diagram_;
     Set legal_ = Diagram::all();
     std::vector<size_t> made_;
+    size_t budget_ = whole_budget;
 };
 
 std::string place_text(const Place& place) {
