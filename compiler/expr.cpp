@@ -79,7 +79,9 @@ public:
         }
         token.kind = Kind::bad;
         token.problem = "this character means nothing in an expression";
-        return take(token, 1);
+        size_t length = 1;  // of the whole character, not of its first byte
+        while (at_ + length < text_.size() && (static_cast<unsigned char>(text_[at_ + length]) & 0xC0) == 0x80) ++length;
+        return take(token, length);
     }
 
 private:

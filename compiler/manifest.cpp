@@ -214,9 +214,12 @@ private:
                 continue;
             }
             std::string body(yaml_.value(pair.value));
-            if (body.find('\n') != std::string::npos || body.find('\r') != std::string::npos ||
-                (!body.empty() && body.back() == '\\'))
-                errors_.at(pair.value, "the body of a macro must be one line and may not end in '\\'");
+            const bool control = std::any_of(body.begin(), body.end(), [](char c) {
+                return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7F;
+            });
+            if (control || (!body.empty() && body.back() == '\\'))
+                errors_.at(pair.value,
+                           "the body of a macro must be one line, without control characters, and may not end in '\\'");
             out.defines.emplace_back(std::string(macro), std::move(body));
         }
     }
@@ -289,7 +292,7 @@ std::vector<Rule> read_rules(ManifestText in, Yaml::Node node, const std::vector
         }
         Rule rule;
         if (const auto* f = fields.find("because"))
-            rule.because = read_text(in.yaml, in.errors, f->value, "because").value_or("");
+            rule.because = read_prose(in.yaml, in.errors, f->value, "because").value_or("");
         rule.forbid = forbid != nullptr;
         const Yaml::Node text = (rule.forbid ? forbid : require)->value;
         if (in.yaml.kind(text) != YamlKind::scalar) {
@@ -298,7 +301,9 @@ std::vector<Rule> read_rules(ManifestText in, Yaml::Node node, const std::vector
                                                               : std::vector<std::string>{"quote the expression"});
             continue;
         }
-        rule.text = std::string(in.yaml.value(text));
+        const auto prose = read_prose(in.yaml, in.errors, text, "an expression");
+        if (!prose) continue;
+        rule.text = *prose;
         rule.place = in.yaml.place_in(text, 0);
         rule.source_line = in.yaml.source_line(rule.place);
         auto parsed = parse_expr(rule.text, axes);
@@ -321,12 +326,9 @@ std::vector<Rule> read_rules(ManifestText in, Yaml::Node node, const std::vector
 }
 
 std::optional<Manifest> load_manifest(Files& files, const std::string& path, Diags& diags) {
-    Result<std::optional<std::string>> text = files.read(path);
-    if (!text || !*text) {
-        diags.error({path, 0, 0}, text ? "no such file" : text.error().message);
-        return std::nullopt;
-    }
-    const std::optional<Yaml> yaml = Yaml::parse(path, std::move(**text), diags);
+    std::optional<std::string> text = read_source(files, path, diags);
+    if (!text) return std::nullopt;
+    const std::optional<Yaml> yaml = Yaml::parse(path, std::move(*text), diags);
     if (!yaml) return std::nullopt;
     Manifest out;
     out.path = path;

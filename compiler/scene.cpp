@@ -86,15 +86,12 @@ private:
 }  // namespace
 
 std::optional<Scene> load_scene(Files& files, const std::string& path, Diags& diags) {
-    Result<std::optional<std::string>> text = files.read(path);
-    if (!text || !*text) {
-        diags.error({path, 0, 0}, text ? "no such file" : text.error().message);
-        return std::nullopt;
-    }
+    std::optional<std::string> text = read_source(files, path, diags);
+    if (!text) return std::nullopt;
     Scene out;
     out.path = path;
     out.name = stem_of(path);
-    const std::optional<Yaml> yaml = Yaml::parse(path, std::move(**text), diags);
+    const std::optional<Yaml> yaml = Yaml::parse(path, std::move(*text), diags);
     if (!yaml) return std::nullopt;
     YamlErrors errors(*yaml, diags);
     SceneReader(*yaml, errors, out).read();

@@ -1,5 +1,7 @@
 #include "compiler/yaml_fields.h"
 
+#include <algorithm>
+
 #include "compiler/expr.h"
 
 namespace kiln {
@@ -47,11 +49,48 @@ std::string describe(const Yaml& yaml, Yaml::Node node) {
     return {};
 }
 
-std::optional<std::string> read_text(const Yaml& yaml, YamlErrors& errors, Yaml::Node node, const std::string& what) {
-    if (yaml.kind(node) == YamlKind::scalar && !yaml.value(node).empty()) return std::string(yaml.value(node));
-    errors.at(node, what + " must be text, this is " +
-                        (yaml.kind(node) == YamlKind::scalar ? std::string("empty") : describe(yaml, node)));
+std::optional<std::string> read_source(Files& files, const std::string& path, Diags& diags) {
+    Result<std::optional<std::string>> text = files.read(path);
+    if (text && *text) return std::move(*text);
+    std::string message = text ? "no such file" : text.error().message;
+    if (message.rfind(path + ": ", 0) == 0) message.erase(0, path.size() + 2);
+    diags.error({path, 0, 0}, std::move(message));
     return std::nullopt;
+}
+
+namespace {
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
+
+// The scalar's text, or an error; `spaces` turns line ends and tabs into spaces.
+std::optional<std::string> read_scalar(const Yaml& yaml, YamlErrors& errors, Yaml::Node node, const std::string& what,
+                                       bool spaces) {
+    const bool scalar = yaml.kind(node) == YamlKind::scalar;
+    std::string text(yaml.value(node));
+    if (spaces) {
+        for (char& c : text)
+            if (c == '\n' || c == '\r' || c == '\t') c = ' ';
+        text.erase(text.find_last_not_of(' ') + 1);
+    }
+    const auto control = std::find_if(text.begin(), text.end(), is_control);
+    if (control != text.end())
+        errors.at(yaml.place_in(node, static_cast<size_t>(control - text.begin())),
+                  *control == '\n' ? what + " must be on one line" : what + " has a control character");
+    else if (!scalar || text.empty())
+        errors.at(node, what + " must be text, this is " + (scalar ? std::string("empty") : describe(yaml, node)));
+    else
+        return text;
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> read_text(const Yaml& yaml, YamlErrors& errors, Yaml::Node node, const std::string& what) {
+    return read_scalar(yaml, errors, node, what, false);
+}
+
+std::optional<std::string> read_prose(const Yaml& yaml, YamlErrors& errors, Yaml::Node node, const std::string& what) {
+    return read_scalar(yaml, errors, node, what, true);
 }
 
 std::optional<bool> read_bool(const Yaml& yaml, YamlErrors& errors, Yaml::Node node, const std::string& what) {
@@ -97,9 +136,12 @@ std::string stem_of(const std::string& path) {
 }
 
 std::string quoted(std::string_view text) {
+    constexpr size_t longest = 64;
+    size_t size = std::min(text.size(), longest);
+    while (size > 0 && size < text.size() && (static_cast<unsigned char>(text[size]) & 0xC0) == 0x80) --size;
     std::string out = "'";
-    for (const char c : text.substr(0, 64)) out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    return out + (text.size() > 64 ? "...'" : "'");
+    for (const char c : text.substr(0, size)) out += is_control(c) ? ' ' : c;
+    return out + (size < text.size() ? "...'" : "'");
 }
 
 }  // namespace kiln

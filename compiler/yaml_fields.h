@@ -4,6 +4,7 @@
 
 #include <initializer_list>
 
+#include "compiler/base/files.h"
 #include "compiler/yaml.h"
 
 namespace kiln {
@@ -30,8 +31,13 @@ private:
 // "a list", "a map", "empty", "text": for messages.
 std::string describe(const Yaml& yaml, Yaml::Node node);
 
-// A non-empty scalar's text.
+// The text of the file to read, or an error about it.
+std::optional<std::string> read_source(Files& files, const std::string& path, Diags& diags);
+
+// A non-empty scalar's text of one line, without control characters.
 std::optional<std::string> read_text(const Yaml& yaml, YamlErrors& errors, Yaml::Node node, const std::string& what);
+// A non-empty scalar's text, with line ends and tabs as spaces (byte for byte, so that offsets stay), none at its end.
+std::optional<std::string> read_prose(const Yaml& yaml, YamlErrors& errors, Yaml::Node node, const std::string& what);
 // true or false, plain.
 std::optional<bool> read_bool(const Yaml& yaml, YamlErrors& errors, Yaml::Node node, const std::string& what);
 // One of `names`; an error gives the nearest. The index.
@@ -42,7 +48,7 @@ std::vector<Yaml::Node> read_list(const Yaml& yaml, YamlErrors& errors, Yaml::No
 
 // [A-Za-z_][A-Za-z0-9_]*
 bool is_identifier(std::string_view text);
-// In quotes, cut when very long.
+// In quotes, on one line, cut when very long.
 std::string quoted(std::string_view text);
 // A path's last part without its ending.
 std::string stem_of(const std::string& path);

@@ -142,6 +142,10 @@ TEST(ManifestErrors, Top) {
         {"name: ''\n", "2:7: the name must be text, this is empty\n"},
         {"name: a b\n",
          "2:7: the name cannot be 'a b': letters, digits, '_', and behind the first also '.' and '-', at most 255 bytes\n"},
+        {"include: [\"a\\0b\"]\n", "2:13: a folder of the search path has a control character\n"},
+        {"include: [\"a\\nb\"]\n", "2:13: a folder of the search path must be on one line\n"},
+        {"rules: [{forbid: \"1\\x1b\"}]\n", "2:20: an expression has a control character\n"},
+        {"rules: [{forbid: 1 \xC3\xA9}]\n", "2:20: '\xC3\xA9': this character means nothing in an expression\n"},
         {"name: [a]\n", "2:7: the name must be text, this is a list\n"},
         {"include: uber\n", "2:10: include must be a list, this is the text 'uber'\n"},
         {"include: [~]\n", "2:11: a folder of the search path must be text, this is empty\n"},
@@ -237,7 +241,7 @@ TEST(ManifestErrors, Shaders) {
         {"- {name: s, stages: {vertex: v}, axes: [a, b], defines: {C: 4}}\n", ""},
         {"- {name: s, stages: {vertex: v}, defines: {N: }}\n", "8:46: the body of a macro must be text, this is empty\n"},
         {"- {name: s, stages: {vertex: v}, defines: {N: \"a\\nb\"}}\n",
-         "8:47: the body of a macro must be one line and may not end in '\\'\n"},
+         "8:47: the body of a macro must be one line, without control characters, and may not end in '\\'\n"},
         {"- {name: s, stages: {vertex: v}, defines: {GL_N: 1, N.M: 1}}\n",
          "8:44: the macro 'GL_N' is reserved: names that begin with 'GL_' belong to GLSL\n"
          "8:53: the macro 'N.M' is no identifier: letters, digits and '_', beginning with no digit\n"},
@@ -291,7 +295,7 @@ TEST(ManifestErrors, FilesThatCannotBeRead) {
     DiskFiles disk;
     Diags folder;
     EXPECT_FALSE(load_manifest(disk, "/", folder));
-    EXPECT_TRUE(folder.has_errors());
+    EXPECT_EQ(render(folder.list()[0], false), "/: error: is a folder\n");
 }
 
 TEST(ManifestErrors, TellsWhenThereAreTooMany) {
