@@ -47,6 +47,7 @@ public:
     Ref relabel(Ref map, const std::vector<uint32_t>& with);
 
     uint32_t axis_of(Ref node) const { return order_[nodes_[node].level]; }
+    uint32_t level_of_axis(uint32_t axis) const { return level_of_axis_[axis]; }
     uint32_t level_of(Ref ref) const { return is_leaf(ref) ? static_cast<uint32_t>(order_.size()) : nodes_[ref].level; }
     const std::vector<Edge>& edges(Ref node) const { return nodes_[node].edges; }
     Ref child(Ref node, uint32_t digit) const;

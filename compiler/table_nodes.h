@@ -1,6 +1,9 @@
 #pragma once
 // Leaf maps as node words of the table (grammar: runtime/table_format.h).
 
+#include <optional>
+#include <vector>
+
 #include "compiler/table_map.h"
 
 namespace kiln {

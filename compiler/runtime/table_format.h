@@ -20,7 +20,8 @@
  *   field   := word:16 shift:6 bits:5 zero:5    (low bits first) where an axis has its digit in a key of 64-bit words; a field
  *              never straddles two words, and 0 bits means that the digit is always 0
  *
- *   diagram := node words, reached from `root`
+ *   diagram := node words, reached from `root`. The fields of a dense node may each take in several axes that lie side by
+ *              side in the key; entries that no valid key reaches hold any ref of the node
  *   ref     := leaf 0x80000000 | value, or the word offset of a node within the diagram, always greater than the offset of
  *              the node that refers to it (so every walk ends)
  *   node    := dense32 | dense16 | runs                            digit d_i is read from the key by field_i
