@@ -4,116 +4,21 @@
 
 #include <algorithm>
 #include <cassert>
-#include <charconv>
 #include <optional>
 #include <unordered_map>
+
+#include "compiler/expr_token.h"
 
 namespace kiln {
 
 namespace {
 
-enum class Kind : uint8_t { end, name, integer, open, close, open_brace, close_brace, comma, op, bang, bad };
-
-struct Token {
-    Kind kind = Kind::end;
-    Op op = Op::literal;  // of Kind::op
-    std::string_view text;
-    uint32_t offset = 0;
-    int32_t number = 0;
-    const char* problem = nullptr;  // of Kind::bad
-};
-
-bool name_start(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool digit(char c) { return c >= '0' && c <= '9'; }
-
-class Lexer {
-public:
-    explicit Lexer(std::string_view text) : text_(text) {}
-
-    Token next() {
-        while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t' || text_[at_] == '\n' || text_[at_] == '\r')) ++at_;
-        Token token;
-        token.offset = static_cast<uint32_t>(at_);
-        if (at_ == text_.size()) return token;
-        const char c = text_[at_];
-        if (name_start(c)) {
-            token.kind = Kind::name;
-            return take(token, name_length());
-        }
-        if (digit(c) || (c == '-' && at_ + 1 < text_.size() && digit(text_[at_ + 1]))) return integer(token);
-        static constexpr struct {
-            const char* text;
-            Kind kind;
-            Op op;
-            const char* problem;
-        } table[] = {
-            {"->", Kind::op, Op::implies, nullptr},
-            {"||", Kind::op, Op::disjunction, nullptr},
-            {"&&", Kind::op, Op::conjunction, nullptr},
-            {"==", Kind::op, Op::equal, nullptr},
-            {"!=", Kind::op, Op::unequal, nullptr},
-            {"<=", Kind::op, Op::less_equal, nullptr},
-            {">=", Kind::op, Op::greater_equal, nullptr},
-            {"=>", Kind::bad, Op::literal, "write '->' for implication or '>=' for a comparison"},
-            {"=<", Kind::bad, Op::literal, "write '<='"},
-            {"<>", Kind::bad, Op::literal, "write '!='"},
-            {"<", Kind::op, Op::less, nullptr},
-            {">", Kind::op, Op::greater, nullptr},
-            {"!", Kind::bang, Op::negate, nullptr},
-            {"(", Kind::open, Op::literal, nullptr},
-            {")", Kind::close, Op::literal, nullptr},
-            {"{", Kind::open_brace, Op::literal, nullptr},
-            {"}", Kind::close_brace, Op::literal, nullptr},
-            {",", Kind::comma, Op::literal, nullptr},
-            {"=", Kind::bad, Op::literal, "write '==' to compare"},
-            {"&", Kind::bad, Op::literal, "write '&&'"},
-            {"|", Kind::bad, Op::literal, "write '||'"},
-        };
-        for (const auto& row : table) {
-            const std::string_view spelling = row.text;
-            if (text_.substr(at_, spelling.size()) != spelling) continue;
-            token.kind = row.kind;
-            token.op = row.op;
-            token.problem = row.problem;
-            return take(token, spelling.size());
-        }
-        token.kind = Kind::bad;
-        token.problem = "this character means nothing in an expression";
-        size_t length = 1;  // of the whole character, not of its first byte
-        while (at_ + length < text_.size() && (static_cast<unsigned char>(text_[at_ + length]) & 0xC0) == 0x80) ++length;
-        return take(token, length);
-    }
-
-private:
-    Token take(Token token, size_t length) {
-        token.text = text_.substr(at_, length);
-        at_ += length;
-        return token;
-    }
-
-    size_t name_length() const {
-        size_t end = at_;
-        while (end < text_.size() && (name_start(text_[end]) || digit(text_[end]))) ++end;
-        return end - at_;
-    }
-
-    Token integer(Token token) {
-        size_t end = at_ + 1;
-        while (end < text_.size() && (name_start(text_[end]) || digit(text_[end]) || text_[end] == '.')) ++end;
-        token.kind = Kind::integer;
-        token = take(token, end - at_);
-        if (const ParsedInteger parsed = parse_integer(token.text); parsed.problem != nullptr) {
-            token.kind = Kind::bad;
-            token.problem = parsed.problem;
-        } else {
-            token.number = parsed.number;
-        }
-        return token;
-    }
-
-    std::string_view text_;
-    size_t at_ = 0;
-};
+// A word of the text for a message, cut when very long.
+std::string shown(std::string_view word) {
+    size_t size = std::min<size_t>(word.size(), 64);
+    while (size > 0 && size < word.size() && (static_cast<unsigned char>(word[size]) & 0xC0) == 0x80) --size;
+    return "'" + std::string(word.substr(0, size)) + (size < word.size() ? "...'" : "'");
+}
 
 // Finds things by name. Looks through short lists, and through any for the first few questions, since most expressions ask few.
 class NameIndex {
@@ -177,11 +82,11 @@ public:
         token_ = lexer_.next();
         bool want_operand = true;
         for (;;) {
-            if (token_.kind == Kind::bad) {
-                fail(token_.offset, "'" + std::string(token_.text) + "': " + token_.problem);
+            if (token_.kind == TokenKind::bad) {
+                fail(token_.offset, shown(token_.text) + ": " + token_.problem);
             } else if (want_operand) {
                 want_operand = !operand();
-            } else if (token_.kind == Kind::end) {
+            } else if (token_.kind == TokenKind::end) {
                 break;
             } else {
                 want_operand = after_operand();
@@ -210,10 +115,10 @@ private:
 
     // Takes what may stand where an operand is expected. True when an operand was completed.
     bool operand() {
-        const Token t = token_;
-        const bool word_not = t.kind == Kind::name && t.text == "not" && !after_comparison();
-        if (t.kind == Kind::bang || word_not || t.kind == Kind::open) {
-            if (after_comparison() && t.kind == Kind::bang) {
+        const ExprToken t = token_;
+        const bool word_not = t.kind == TokenKind::name && t.text == "not" && !after_comparison();
+        if (t.kind == TokenKind::bang || word_not || t.kind == TokenKind::open) {
+            if (after_comparison() && t.kind == TokenKind::bang) {
                 fail(t.offset, "'!' binds looser than a comparison: put parentheses around what it negates");
                 return false;
             }
@@ -221,55 +126,55 @@ private:
                 fail(t.offset, "nested deeper than " + std::to_string(expr_level_limit) + " levels");
                 return false;
             }
-            const auto what = t.kind == Kind::open ? Pending::What::open : Pending::What::negate;
+            const auto what = t.kind == TokenKind::open ? Pending::What::open : Pending::What::negate;
             pending_.push_back({what, Op::negate, t.offset});
             advance();
             return false;
         }
-        if (t.kind == Kind::name) {
+        if (t.kind == TokenKind::name) {
             operands_.push_back({std::nullopt, t.text, t.offset, false});
             advance();
             return true;
         }
-        if (t.kind == Kind::integer) {
+        if (t.kind == TokenKind::integer) {
             operands_.push_back({literal(t.number, t.offset), {}, t.offset, false});
             advance();
             return true;
         }
-        if (t.kind == Kind::end)
+        if (t.kind == TokenKind::end)
             fail(t.offset, text_.empty() ? "the expression is empty"
                                          : "the expression ends where an axis, a value or an integer is expected");
         else
-            fail(t.offset, "expected an axis, a value, an integer or '(' before '" + std::string(t.text) + "'");
+            fail(t.offset, "expected an axis, a value, an integer or '(' before " + shown(t.text));
         return false;
     }
 
     // Takes what may stand after an operand. True when an operand is expected next.
     bool after_operand() {
-        const Token t = token_;
-        if (t.kind == Kind::op) {
+        const ExprToken t = token_;
+        if (t.kind == TokenKind::op) {
             binary(t);
             advance();
             return true;
         }
-        if (t.kind == Kind::name && t.text == "in") {
+        if (t.kind == TokenKind::name && t.text == "in") {
             member(t);
             return false;
         }
-        if (t.kind == Kind::close) {
+        if (t.kind == TokenKind::close) {
             close(t);
             return false;
         }
         std::string hint;
-        if (t.kind == Kind::name && t.text == "and") hint = " (write '&&')";
-        if (t.kind == Kind::name && t.text == "or") hint = " (write '||')";
-        if (t.kind == Kind::name && t.text == "not") hint = " (write !(axis in {...}) for 'not in')";
-        if (t.kind == Kind::bang) hint = " (write '!=' to compare)";
-        fail(t.offset, "expected an operator before '" + std::string(t.text) + "'" + hint);
+        if (t.kind == TokenKind::name && t.text == "and") hint = " (write '&&')";
+        if (t.kind == TokenKind::name && t.text == "or") hint = " (write '||')";
+        if (t.kind == TokenKind::name && t.text == "not") hint = " (write !(axis in {...}) for 'not in')";
+        if (t.kind == TokenKind::bang) hint = " (write '!=' to compare)";
+        fail(t.offset, "expected an operator before " + shown(t.text) + hint);
         return false;
     }
 
-    void binary(const Token& t) {
+    void binary(const ExprToken& t) {
         const Pending next{Pending::What::binary, t.op, t.offset};
         const int power = strength(next);
         while (!pending_.empty() && !error_) {
@@ -282,12 +187,12 @@ private:
         pending_.push_back(next);
     }
 
-    void chained(const Token& t) { fail(t.offset, "comparisons do not chain: join two of them with '&&'"); }
+    void chained(const ExprToken& t) { fail(t.offset, "comparisons do not chain: join two of them with '&&'"); }
 
-    void member(const Token& in) {
+    void member(const ExprToken& in) {
         if (after_comparison() || operands_.back().compared) return chained(in);
         advance();
-        if (token_.kind != Kind::open_brace) return fail(token_.offset, "expected '{' after 'in'");
+        if (token_.kind != TokenKind::open_brace) return fail(token_.offset, "expected '{' after 'in'");
         const uint32_t brace = token_.offset;
         Operand& left = operands_.back();
         resolve_axis(left);
@@ -295,26 +200,26 @@ private:
         std::vector<uint32_t> args{*left.node};
         advance();
         for (;;) {
-            if (token_.kind == Kind::integer) {
+            if (token_.kind == TokenKind::integer) {
                 args.push_back(literal(token_.number, token_.offset));
-            } else if (token_.kind == Kind::name) {
+            } else if (token_.kind == TokenKind::name) {
                 if (expr_.nodes[*left.node].op != Op::axis)
-                    return fail(token_.offset, "'" + std::string(token_.text) + "': only an axis has named values");
+                    return fail(token_.offset, shown(token_.text) + ": only an axis has named values");
                 const uint32_t axis = expr_.nodes[*left.node].axis;
                 const std::optional<int32_t> number = value_of(axis, token_.text);
                 if (!number) return no_value(token_.offset, axis, token_.text);
                 args.push_back(literal(*number, token_.offset));
-            } else if (token_.kind == Kind::close_brace) {
+            } else if (token_.kind == TokenKind::close_brace) {
                 return fail(token_.offset,
                             args.size() == 1 ? "'in {}' holds never: name at least one value" : "expected a value after ','");
             } else {
-                return fail(token_.kind == Kind::end ? brace : token_.offset,
-                            token_.kind == Kind::end ? "this '{' is not closed" : "expected a value or an integer");
+                return fail(token_.kind == TokenKind::end ? brace : token_.offset,
+                            token_.kind == TokenKind::end ? "this '{' is not closed" : "expected a value or an integer");
             }
             advance();
-            if (token_.kind == Kind::close_brace) break;
-            if (token_.kind == Kind::end) return fail(brace, "this '{' is not closed");
-            if (token_.kind != Kind::comma) return fail(token_.offset, "expected ',' or '}'");
+            if (token_.kind == TokenKind::close_brace) break;
+            if (token_.kind == TokenKind::end) return fail(brace, "this '{' is not closed");
+            if (token_.kind != TokenKind::comma) return fail(token_.offset, "expected ',' or '}'");
             advance();
         }
         advance();
@@ -322,7 +227,7 @@ private:
         left.compared = true;
     }
 
-    void close(const Token& t) {
+    void close(const ExprToken& t) {
         while (!pending_.empty() && pending_.back().what != Pending::What::open && !error_) reduce();
         if (error_) return;
         if (pending_.empty()) return fail(t.offset, "this ')' was never opened");
@@ -375,7 +280,7 @@ private:
     void no_value(uint32_t offset, uint32_t axis, std::string_view name) {
         std::vector<std::string> names;
         for (const AxisValue& v : axes_[axis].values) names.push_back(v.name);
-        fail(offset, "'" + std::string(name) + "' is not a value of axis '" + axes_[axis].name + "'" + did_you_mean(name, names));
+        fail(offset, shown(name) + " is not a value of axis '" + axes_[axis].name + "'" + did_you_mean(name, names));
         error_->axis = axis;
     }
 
@@ -399,7 +304,7 @@ private:
         if (!axis) {
             std::vector<std::string> names;
             for (const Axis& a : axes_) names.push_back(a.name);
-            return fail(o.offset, "unknown axis '" + std::string(o.name) + "'" + did_you_mean(o.name, names));
+            return fail(o.offset, "unknown axis " + shown(o.name) + did_you_mean(o.name, names));
         }
         o.node = node({Op::axis, 0, *axis, {}, o.offset});
         expr_.axes.push_back(*axis);
@@ -407,8 +312,8 @@ private:
 
     std::string_view text_;
     const std::vector<Axis>& axes_;
-    Lexer lexer_;
-    Token token_;
+    ExprLexer lexer_;
+    ExprToken token_;
     Expr expr_;
     std::vector<Operand> operands_;
     std::vector<Pending> pending_;
@@ -427,25 +332,6 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
     std::string all;
     for (const std::string& candidate : candidates) all += (all.empty() ? "" : ", ") + candidate;
     return all.size() > 200 ? std::string() : " (known: " + all + ")";
-}
-
-ParsedInteger parse_integer(std::string_view text) {
-    constexpr const char* not_integer = "not an integer (decimal or 0x)";
-    constexpr const char* out_of_range = "out of range: -2147483648 to 2147483647";
-    const bool negative = !text.empty() && text.front() == '-';
-    std::string_view digits = negative ? text.substr(1) : text;
-    const bool hex = digits.size() > 2 && digits[0] == '0' && (digits[1] == 'x' || digits[1] == 'X');
-    if (hex) digits.remove_prefix(2);
-    if (digits.empty()) return {0, not_integer};
-    if (!hex && digits.size() > 1 && digits[0] == '0' && digits.find_first_not_of("0123456789") == std::string_view::npos)
-        return {0, "leading zeros mean octal elsewhere: write it without"};
-    uint64_t magnitude = 0;
-    const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), magnitude, hex ? 16 : 10);
-    if (end != digits.data() + digits.size() || code == std::errc::invalid_argument) return {0, not_integer};
-    const uint64_t limit = uint64_t{0x7FFFFFFF} + (negative ? 1 : 0);
-    if (code == std::errc::result_out_of_range || magnitude > limit) return {0, out_of_range};
-    const int64_t value = negative ? -static_cast<int64_t>(magnitude) : static_cast<int64_t>(magnitude);
-    return {static_cast<int32_t>(value), nullptr};
 }
 
 std::variant<Expr, ExprError> parse_expr(std::string_view text, const std::vector<Axis>& axes) {
