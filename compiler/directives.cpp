@@ -132,14 +132,18 @@ void Preprocessor::undefine(const Token& at, const Token* begin, const Token* en
     pp_.macros.assign(begin->text, 0, here_);
 }
 
+// "a -> b -> a": the first file that is being read twice, and how it came back to itself.
 std::string Preprocessor::chain(uint16_t next) const {
+    std::vector<uint16_t> stack = stack_;
+    stack.push_back(next);
     std::string out;
-    const auto first = std::find(stack_.begin(), stack_.end(), next);
-    for (auto at = first == stack_.end() ? stack_.begin() : first; at != stack_.end(); ++at) {
-        out += sources_.file(*at).name + " -> ";
-        if (first != stack_.end() && at != first && *at == next) break;
+    for (auto first = stack.begin(); first != stack.end(); ++first) {
+        const auto again = std::find(first + 1, stack.end(), *first);
+        if (again == stack.end()) continue;
+        for (auto at = first; at != again; ++at) out += sources_.file(*at).name + " -> ";
+        return out + sources_.file(*again).name;
     }
-    return out + sources_.file(next).name;
+    return out;
 }
 
 void Preprocessor::include(const Token& at, const Token* begin, const Token* end, uint16_t index, size_t depth) {

@@ -40,7 +40,7 @@ struct Preprocessing {
     std::vector<bool> axes_read;
     uint64_t work = 0;  // tokens scanned
 
-    static constexpr uint64_t max_work = 200'000'000;
+    static constexpr uint64_t max_work = 16'000'000;
     static constexpr size_t max_depth = 400;  // nested macro calls, parentheses in #if
 
     // The digit that an axis has all over `set`, or nothing when it has several.

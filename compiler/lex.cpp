@@ -73,7 +73,6 @@ public:
     void run() {
         out_.tokens.reserve(text_.size() / 4);
         while (at_ < text_.size()) line();
-        out_.last_line = starts_.back().line;
         link_conditionals();
     }
     void run_plain() {
@@ -426,6 +425,7 @@ private:
             case Directive::ifdef:
             case Directive::ifndef:
                 open_.push_back({index, false});
+                out_.max_depth = std::max(out_.max_depth, static_cast<uint32_t>(open_.size()));
                 break;
             case Directive::elif:
             case Directive::else_:

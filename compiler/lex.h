@@ -82,7 +82,7 @@ struct LexedFile {
     std::vector<LexProblem> problems;
     bool continued = false;  // has a line continuation outside comments
     uint32_t continued_line = 0;
-    uint32_t last_line = 1;
+    uint32_t max_depth = 0;  // of conditionals
 };
 
 // `file` goes into every token. Never fails: what cannot be lexed is in `problems`.

@@ -82,6 +82,18 @@ void Preprocessor::read_file(uint16_t index, size_t depth) {
         pp_.findings.error(at, "line continuation needs #version 420 or GL_ARB_shading_language_420pack",
                            pp_.diagram.minus(here_, pack420_));
     }
+    static constexpr size_t max_nesting = 65;  // glslang's, over all files
+    if (outer_frames + file.max_depth > max_nesting) {
+        const auto deep = std::find_if(file.items.begin(), file.items.end(),
+                                       [&](const Item& item) { return outer_frames + item.depth >= max_nesting; });
+        Token at;
+        at.file = index;
+        at.line = deep->line;
+        at.column = deep->column;
+        pp_.findings.error(at, "conditionals nested more than " + std::to_string(max_nesting) + " deep", here_);
+        kill(here_);
+        return;
+    }
     for (size_t i = 0; i < file.items.size();) {
         const Item& item = file.items[i];
         Token at;
