@@ -18,7 +18,7 @@ namespace {
 constexpr unsigned most_terms = 4;
 constexpr size_t scratch_nodes = 2'000'000;
 constexpr size_t most_axes_tried = 64;
-constexpr unsigned most_boxes = 4'000;
+constexpr unsigned most_boxes = 4'000, most_searches = 60;  // work for one description
 
 struct Condition {
     std::string text;
@@ -49,18 +49,22 @@ class Search {
 public:
     Search(Diagram& diagram, const std::vector<Axis>& axes) : d_(diagram), axes_(axes) {}
 
-    std::optional<Condition> find(Set set, Set care, unsigned budget) {
+    // With `compare` a conjunction may begin with comparisons of axes.
+    std::optional<Condition> find(Set set, Set care, unsigned budget, bool compare = true) {
+        if (++searches_ > most_searches) return std::nullopt;
         std::optional<Condition> best;
+        const auto offer = [&](std::optional<Condition> found) {
+            if (found && (!best || shorter(*found, *best))) best = std::move(found);
+        };
         const Set off = d_.minus(care, set);
-        for (const std::vector<uint32_t>& axes : small_supports(set, off, care)) {
-            if (axes.size() > budget) continue;
-            if (auto found = cover(project(set, axes), project(off, axes), axes, budget))
-                if (!best || shorter(*found, *best)) best = std::move(found);
+        const std::vector<std::vector<uint32_t>> supports = small_supports(set, off, care);
+        for (const std::vector<uint32_t>& axes : supports)
+            if (axes.size() <= budget) offer(cover(project(set, axes), project(off, axes), axes, budget));
+        for (const std::vector<uint32_t>& axes : supports) {
+            if (best && best->terms <= 2) break;
+            if (compare && axes.size() <= 2 * budget) after_comparison(set, care, axes, budget, offer);
+            if (axes.size() <= budget) after_term(set, care, axes, budget, offer);
         }
-        if (!best || best->terms > 2)
-            for (const std::vector<uint32_t>& axes : small_supports(set, off, care))
-                if (auto found = with_first_term(set, care, axes, budget))
-                    if (!best || shorter(*found, *best)) best = std::move(found);
         if (d_.exhausted() || !best || d_.both(best->set, care) != set || d_.exhausted()) return std::nullopt;
         return best;
     }
@@ -160,7 +164,6 @@ private:
         } while (best && std::next_permutation(order.begin(), order.end()));
         if (best) return best;
         for (unsigned terms = 2; terms <= budget; ++terms) {
-            boxes_ = 0;
             if (auto found = alternatives(on, off, axes, terms)) return found;
         }
         return std::nullopt;
@@ -214,10 +217,60 @@ private:
         return box;
     }
 
-    Set compared(uint32_t a, uint32_t b, const std::string& op) {
-        const auto holds = [&](int32_t x, int32_t y) {
-            return op == "==" ? x == y : op == "!=" ? x != y : op == "<" ? x < y : x > y;
-        };
+    // `first && ...`: a first condition that holds on all of the set, and what is left to say inside it.
+    std::optional<Condition> after(Condition first, Set set, Set care, unsigned budget, bool compare) {
+        const Set narrower = d_.both(care, first.set);
+        if (narrower == care || first.terms > budget || d_.exhausted()) return std::nullopt;
+        if (narrower == set) return first;
+        const auto rest = find(set, narrower, budget - first.terms, compare);
+        if (!rest) return std::nullopt;
+        first.text += " && " + (rest->parts.size() > 1 ? "(" + rest->text + ")" : rest->text);
+        first.terms += rest->terms;
+        first.set = d_.both(first.set, rest->set);
+        return first;
+    }
+
+    // `light != none && (...)`
+    template <class Offer>
+    void after_term(Set set, Set care, const std::vector<uint32_t>& axes, unsigned budget, const Offer& offer) {
+        for (const uint32_t a : axes) {
+            const Flags must = digits_of(set, a);
+            if (const auto term = shortest_term(axes_[a], must, must); term && term->cost != 0)
+                offer(after({term->text, term->cost, d_.where(a, term->digits), {}}, set, care, budget, false));
+        }
+    }
+
+    // `first == second && ...`. What the values that each axis has alone imply is no comparison worth making.
+    template <class Offer>
+    void after_comparison(Set set, Set care, const std::vector<uint32_t>& axes, unsigned budget, const Offer& offer) {
+        constexpr size_t most_values = 256;  // a comparison is built value by value
+        for (const uint32_t a : axes) {
+            for (const uint32_t b : axes) {
+                const Axis &x = axes_[a], &y = axes_[b];
+                const bool integers = x.kind == AxisKind::integer && y.kind == AxisKind::integer;
+                const bool flags = is_flag(x) && is_flag(y);
+                if (b <= a || !(integers || flags) || x.values.size() > most_values || y.values.size() > most_values) continue;
+                const Set box = d_.both(d_.where(a, digits_of(set, a)), d_.where(b, digits_of(set, b)));
+                for (const auto& [op, holds] : comparisons) {
+                    if (flags && op != "==" && op != "!=") continue;
+                    const Set both = compared(a, b, holds);
+                    if (!d_.subset(set, both) || d_.subset(box, both)) continue;
+                    offer(after({x.name + " " + op + " " + y.name, 1, both, {}}, set, care, budget, true));
+                }
+            }
+        }
+    }
+
+    static bool is_flag(const Axis& axis) { return axis.kind == AxisKind::boolean || axis.kind == AxisKind::defined; }
+
+    using Holds = bool (*)(int32_t, int32_t);
+    static inline const std::pair<std::string, Holds> comparisons[] = {
+        {"==", [](int32_t a, int32_t b) { return a == b; }}, {"!=", [](int32_t a, int32_t b) { return a != b; }},
+        {"<", [](int32_t a, int32_t b) { return a < b; }},   {"<=", [](int32_t a, int32_t b) { return a <= b; }},
+        {">", [](int32_t a, int32_t b) { return a > b; }},   {">=", [](int32_t a, int32_t b) { return a >= b; }},
+    };
+
+    Set compared(uint32_t a, uint32_t b, Holds holds) {
         const bool swapped = d_.level_of_axis(a) > d_.level_of_axis(b);
         const uint32_t upper = swapped ? b : a, lower = swapped ? a : b;
         std::vector<Diagram::Edge> runs;
@@ -230,41 +283,9 @@ private:
         return d_.branch(upper, runs);
     }
 
-    // `a == b && ...` or `light != none && (...)`: a first term that holds on all of the set, and what is left to say inside it.
-    std::optional<Condition> with_first_term(Set set, Set care, const std::vector<uint32_t>& axes, unsigned budget) {
-        constexpr size_t most_values = 256;  // a comparison is built value by value
-        if (axes.size() > 2 * budget || budget == 0) return std::nullopt;
-        std::optional<Condition> best;
-        const auto attempt = [&](Condition first) {
-            const Set narrower = d_.both(care, first.set);
-            if (narrower == care || first.terms > budget || d_.exhausted()) return;
-            if (narrower != set) {
-                const auto rest = find(set, narrower, budget - first.terms);
-                if (!rest) return;
-                first.text += " && " + (rest->parts.size() > 1 ? "(" + rest->text + ")" : rest->text);
-                first.terms += rest->terms;
-                first.set = d_.both(first.set, rest->set);
-            }
-            if (!best || shorter(first, *best)) best = std::move(first);
-        };
-        for (const uint32_t a : axes) {
-            const Flags must = digits_of(set, a);
-            if (const auto term = shortest_term(axes_[a], must, must); term && term->cost != 0)
-                attempt({term->text, term->cost, d_.where(a, term->digits), {}});
-            for (const uint32_t b : axes) {
-                if (b <= a || axes_[a].values.size() > most_values || axes_[b].values.size() > most_values) continue;
-                for (const char* op : {"==", "!=", "<", ">"}) {
-                    const Set both = compared(a, b, op);
-                    if (d_.subset(set, both)) attempt({axes_[a].name + " " + op + " " + axes_[b].name, 1, both, {}});
-                }
-            }
-        }
-        return best;
-    }
-
     Diagram& d_;
     const std::vector<Axis>& axes_;
-    unsigned boxes_ = 0;
+    unsigned boxes_ = 0, searches_ = 0;
 };
 
 }  // namespace

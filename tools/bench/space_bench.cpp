@@ -124,10 +124,10 @@ void preprocessor_like(benchmark::State& state) {
     }
 }
 
-void describe(benchmark::State& state) {
+void describe(benchmark::State& state, const char* words) {
     Source source = scattered(40, 60, 6);
     const auto space = source.build();
-    const Expr expr = std::get<Expr>(parse_expr("f3 && f8 == 2 || !f5 && f12 != 0", space->axes));
+    const Expr expr = std::get<Expr>(parse_expr(words, space->axes));
     const Set set = space->diagram->both(space->legal, compile_expr(*space, expr));
     std::string text;
     for (auto _ : state) text = describe_set(*space, set, space->legal);
@@ -158,7 +158,12 @@ BENCHMARK_CAPTURE(count, tangled_40, scattered(40, 40, 40))->Unit(benchmark::kMi
 BENCHMARK_CAPTURE(count, compared_4096, compared(4096))->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(count, wide_256x4096, wide(256, 4096))->Unit(benchmark::kMillisecond);
 BENCHMARK(preprocessor_like)->Unit(benchmark::kMicrosecond);
-BENCHMARK(describe)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(describe, one, "f3")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(describe, two, "f3 && f8 == 2")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(describe, alternatives, "f3 && f8 == 2 || !f5 && f12 != 0")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(describe, too_long, "f3 && f8 == 2 && f5 && f6 && f9 && f10")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(describe, tangled, "f3 && f8 == 2 || !f5 && f12 == 3 || f3 && f12 != 1 && f6")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(describe, parity, "(f1 == f2) == (f3 == f4)")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(lint_rules, chain_1024, chain(1024))->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(lint_rules, scattered_1000, scattered(1000, 1000, 5))->Unit(benchmark::kMillisecond);
 

@@ -42,7 +42,7 @@ TEST(Describe, SaysWhatWasWritten) {
         {"level >= 1 && level <= 7", "!(level in {0, 8, 9})"},
         {"level != 0", "level != 0"},
         {"level < limit", "level < limit"},
-        {"level < limit && water", "water && level < limit"},
+        {"level < limit && water", "level < limit && water"},
         {"ibl || water", "ibl || water"},
         {"(light == area && water) || level == 3", "(light == area && water) || level == 3"},
         {"water -> cascades == 2", "cascades == 2 || !water"},
