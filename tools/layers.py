@@ -13,7 +13,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 # Our own stages that stand below the pass and above their library wrappers are one layer; the pass, the device and the
 # command line follow.
 PASS = {"pass", "memo"}
-VALIDATION = {"validate", "workers", "device"}
+VALIDATION = {"validate", "validate_tasks", "workers", "device", "check", "check_wire", "published"}
 
 # Third-party header prefix -> the files that may include it.
 THIRD_PARTY = {
@@ -24,7 +24,7 @@ THIRD_PARTY = {
     "glslang/": {"compiler/glsl.cpp"},
     "spirv-tools/": {"compiler/spirv.cpp"},
     "spirv_cross/": {"compiler/cross.cpp"},
-    "lz4": {"compiler/lz4.cpp"},
+    "lz4": {"compiler/table_text.cpp"},
     "png": {"compiler/device/png.cpp"},
     "mimalloc": {"tools/allocator.cpp"},
 }
@@ -35,7 +35,7 @@ C_LIBRARY = {"fcntl.h", "unistd.h", "poll.h", "signal.h", "dirent.h", "dlfcn.h",
 def layer_of(path):
     parts = path.parts
     stem = pathlib.Path(parts[-1]).stem
-    if parts[0] == "tests":
+    if parts[0] == "tests" or parts[:2] == ("tools", "bench"):
         return 6
     if parts[0] == "tools":
         return 5
