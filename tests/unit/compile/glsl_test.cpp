@@ -94,8 +94,8 @@ TEST(Glsl, EveryVersionOfSpirv) {
 TEST(Glsl, DebugKeepsLinesAndMessagesCountTheText) {
     Options options;
     options.debug = true;
-    const std::string good =
-        "#version 450\n#line 40 \"lib/a.glsl\"\nvoid main()\n{\n#line 90 \"b.glsl\"\nfloat kept_name = 1.0;\n}\n";
+    const std::string head = "#version 450\n#extension GL_GOOGLE_cpp_style_line_directive : require\n";
+    const std::string good = head + "#line 40 \"lib/a.glsl\"\nvoid main()\n{\n#line 90 \"b.glsl\"\nfloat kept_name = 1.0;\n}\n";
     const Compiled out = glsl_compile(Stage::vertex, good, options);
     ASSERT_TRUE(out.messages.empty());
     const Result<std::string> text = spirv_disassemble(out.words);
@@ -106,9 +106,9 @@ TEST(Glsl, DebugKeepsLinesAndMessagesCountTheText) {
     EXPECT_NE(std::string::npos, text->find("kept_name"));
 
     const Compiled bad =
-        glsl_compile(Stage::vertex, "#version 450\n#line 40 \"lib/a.glsl\"\nvoid main()\n{\n#line 90\nx = 1;\n}\n", options);
+        glsl_compile(Stage::vertex, head + "#line 40 \"lib/a.glsl\"\nvoid main()\n{\n#line 90\nx = 1;\n}\n", options);
     ASSERT_EQ(1u, bad.messages.size());
-    EXPECT_EQ(6u, bad.messages[0].line);
+    EXPECT_EQ(7u, bad.messages[0].line);
     EXPECT_EQ("'x' : undeclared identifier", bad.messages[0].text);
 }
 
