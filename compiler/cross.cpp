@@ -125,10 +125,24 @@ private:
         if (target_ != Target::glsl450)
             for (const auto mode : {SpvExecutionModeDepthGreater, SpvExecutionModeDepthLess, SpvExecutionModeDepthUnchanged})
                 spvc_compiler_unset_execution_mode(compiler_, mode);
-        for (const uint32_t id : edits.flat) spvc_compiler_set_decoration(compiler_, id, SpvDecorationFlat, 1);
+        for (const Edits::Interpolate& i : edits.interpolate) interpolate(i);
         for (const auto& [id, number] : edits.bindings) {
             spvc_compiler_unset_decoration(compiler_, id, SpvDecorationDescriptorSet);
             spvc_compiler_set_decoration(compiler_, id, SpvDecorationBinding, number);
+        }
+    }
+
+    void interpolate(const Edits::Interpolate& i) {
+        const std::pair<SpvDecoration, bool> all[] = {
+            {SpvDecorationFlat, i.how.flat},
+            {SpvDecorationNoPerspective, i.how.no_perspective && language_ == Language::glsl},
+            {SpvDecorationCentroid, i.how.centroid},
+            {SpvDecorationSample, i.how.sample && target_ == Target::glsl450}};
+        for (const auto& [decoration, wanted] : all) {
+            if (i.is_member && wanted) spvc_compiler_set_member_decoration(compiler_, i.id, i.member, decoration, 1);
+            if (i.is_member && !wanted) spvc_compiler_unset_member_decoration(compiler_, i.id, i.member, decoration);
+            if (!i.is_member && wanted) spvc_compiler_set_decoration(compiler_, i.id, decoration, 1);
+            if (!i.is_member && !wanted) spvc_compiler_unset_decoration(compiler_, i.id, decoration);
         }
     }
 

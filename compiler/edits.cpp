@@ -167,7 +167,32 @@ void rename_varying(const ir::View& view, const ir::Variable& variable, Edits& o
     }
 }
 
-void plan_varyings(const ir::View& view, const Reflection& reflection, Target target, Edits& out) {
+// The reader's interpolation, where it is known; and integers are flat in any case, as GL wants it said on both sides.
+void plan_interpolation(const ir::View& view, const ir::Variable& variable, const SlotLayout& layout, Edits& out) {
+    const auto plan = [&](uint32_t id, bool is_member, uint32_t member, uint32_t location, uint32_t type, bool is_flat) {
+        Interpolation how{location, is_flat, false, false, false};
+        const auto read = std::find_if(layout.interpolation.begin(), layout.interpolation.end(),
+                                       [&](const Interpolation& i) { return i.location == location; });
+        const bool known = read != layout.interpolation.end();
+        if (known) how = *read;
+        if (is_integer(view, type)) how.flat = true;
+        if (known || how.flat != is_flat) out.interpolate.push_back({id, is_member, member, how});
+    };
+    const ir::Decorations& marks = view.marks(variable.id);
+    const uint32_t bare = bare_type(view, variable.type);
+    const ir::Type& t = view.type(bare);
+    uint32_t location = or_zero(marks.location);
+    if (t.kind != ir::Kind::structure || !view.marks(bare).block)
+        return plan(variable.id, false, 0, location, variable.type, marks.flat);
+    for (uint32_t m = 0; m < t.members.size(); ++m) {
+        const ir::Decorations& member = view.member_marks(bare, m);
+        if (member.location != ir::none) location = member.location;
+        plan(bare, true, m, location, t.members[m], member.flat);
+        location += locations_of(view, t.members[m]);
+    }
+}
+
+void plan_varyings(const ir::View& view, const Reflection& reflection, Target target, const SlotLayout& layout, Edits& out) {
     const bool gl = language_of(target) == Language::glsl || language_of(target) == Language::essl;
     if (!gl) return;
     for (const ir::Variable& v : view.variables) {
@@ -176,8 +201,7 @@ void plan_varyings(const ir::View& view, const Reflection& reflection, Target ta
         const uint32_t bare = bare_type(view, v.type);
         if (view.type(bare).kind == ir::Kind::structure && view.member_marks(bare, 0).builtin != ir::none) continue;
         if (links_by_name(target)) rename_varying(view, v, out);
-        if (v.storage == ir::sc_output && is_integer(view, v.type) && !view.marks(v.id).flat && reflection.stage == Stage::vertex)
-            out.flat.push_back(v.id);
+        if (v.storage == ir::sc_output && reflection.stage == layout.rasterised) plan_interpolation(view, v, layout, out);
     }
 }
 
@@ -196,6 +220,9 @@ Result<Edits> plan_edits(const ir::View& view, const Reflected& reflected, Targe
         seen.push_back(slot);
         if (!alias) out.slots.push_back(*slot);
         out.by_variable.emplace_back(d.variable, *slot);
+        std::string name = slot->name;
+        if (slot->by_stage && (language_of(target) == Language::glsl || language_of(target) == Language::essl))
+            name += std::string("_") + name_of(reflected.reflection.stage);
         if (is_block(r.kind)) {
             // A type that two blocks share cannot carry the name; SPIRV-Cross then falls back to the variable's.
             const bool shared = std::find(types.begin(), types.end(), d.type) != types.end() ||
@@ -205,17 +232,17 @@ Result<Edits> plan_edits(const ir::View& view, const Reflected& reflected, Targe
             const std::string& own = view.name(d.variable);
             if (shared) {
                 out.names.emplace_back(d.type, "");
-                out.names.emplace_back(d.variable, alias && !own.empty() ? own : slot->name);
+                out.names.emplace_back(d.variable, alias && !own.empty() ? own : name);
             } else {
-                if (!alias) out.names.emplace_back(d.type, slot->name);
+                if (!alias) out.names.emplace_back(d.type, name);
                 if (own.empty()) out.names.emplace_back(d.variable, slot->name + "_data");
             }
         } else if (!alias) {
-            out.names.emplace_back(d.variable, slot->name);
+            out.names.emplace_back(d.variable, name);
         }
         out.bindings.emplace_back(d.variable, gl_number(*slot));
     }
-    plan_varyings(view, reflected.reflection, target, out);
+    plan_varyings(view, reflected.reflection, target, layout, out);
     return out;
 }
 

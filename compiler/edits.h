@@ -25,8 +25,15 @@ struct Edits {
     };
     std::vector<MemberName> member_names;
     std::vector<std::pair<uint32_t, uint32_t>> bindings;  // variable -> number, for GLSL and ESSL
-    std::vector<uint32_t> flat;                           // variables that become flat
-    std::vector<Slot> slots;                              // of this module's resources, for HLSL and MSL
+    // Variables, or members of a structure, whose interpolation is set to this.
+    struct Interpolate {
+        uint32_t id = 0;
+        bool is_member = false;
+        uint32_t member = 0;
+        Interpolation how;
+    };
+    std::vector<Interpolate> interpolate;
+    std::vector<Slot> slots;  // of this module's resources, for HLSL and MSL
     std::vector<std::pair<uint32_t, Slot>> by_variable;
     std::vector<const char*> extensions;  // to be asked for
     bool separate = false;                // has images or samplers that are not combined

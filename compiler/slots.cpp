@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 
@@ -22,6 +23,9 @@ struct Entry {
     uint64_t count = 1;
     bool unsized = false;
     bool atomic = false;  // an image that atomics may reach
+    Stage stage = Stage::vertex;
+    const std::vector<Member>* members = nullptr;  // as the first stage has them
+    bool by_stage = false;
 };
 
 using Key = std::tuple<bool, uint32_t, uint32_t, ResourceKind>;  // push constants last
@@ -94,8 +98,27 @@ std::map<Key, Entry> unite(const std::vector<const Reflection*>& modules) {
             e.count = std::max(e.count, count);
             constexpr uint32_t r32i = 24, r32ui = 33;
             e.atomic |= r.format == r32i || r.format == r32ui;
+            if (!e.members) e.members = &r.members, e.stage = m->stage;
+            e.by_stage |= e.stage != m->stage && *e.members != r.members;
         }
     return all;
+}
+
+// What every fragment module that reads a location says about it.
+std::vector<Interpolation> agreed_interpolation(const std::vector<const Reflection*>& modules) {
+    std::map<uint32_t, std::optional<Interpolation>> read;  // nullopt: they disagree
+    for (const Reflection* m : modules) {
+        if (m->stage != Stage::fragment) continue;
+        for (const Varying& v : m->inputs) {
+            const Interpolation how{v.location, v.flat, v.no_perspective, v.centroid, v.sample};
+            const auto [at, fresh] = read.emplace(v.location, how);
+            if (!fresh && at->second != how) at->second.reset();
+        }
+    }
+    std::vector<Interpolation> out;
+    for (const auto& [location, how] : read)
+        if (how) out.push_back(*how);
+    return out;
 }
 
 }  // namespace
@@ -116,9 +139,11 @@ SlotLayout assign_slots(const std::vector<const Reflection*>& modules) {
     for (const Reflection* m : modules)
         for (const Stage stage : {Stage::tess_evaluation, Stage::geometry, Stage::mesh})
             if (m->stage == stage) out.rasterised = std::max(out.rasterised, stage);
+    out.interpolation = agreed_interpolation(modules);
     std::set<std::string> names;
     for (const auto& [key, entry] : all) {
         Slot s;
+        s.by_stage = entry.by_stage;
         std::tie(std::ignore, s.set, s.binding, s.kind) = key;
         s.name = entry.name;
         if (!names.insert(s.name).second) {

@@ -43,12 +43,23 @@ struct Slot {
     // GL has no separate samplers: image and sampler together take the unit image.texture + sampler.unit_offset, and an image
     // that is only fetched image.texture + image.unit_offset.
     uint32_t unit_offset = 0;
+    // A block whose members are not the same in all stages: GL links blocks by name and would refuse, so GLSL and ESSL texts
+    // call it <name>_<stage>.
+    bool by_stage = false;
     friend bool operator==(const Slot&, const Slot&) = default;
 };
 
+// How the fragment stage reads a location. Vulkan looks at the reader alone; GL wants both sides to agree.
+struct Interpolation {
+    uint32_t location = 0;
+    bool flat = false, no_perspective = false, centroid = false, sample = false;
+    friend bool operator==(const Interpolation&, const Interpolation&) = default;
+};
+
 struct SlotLayout {
-    std::vector<Slot> slots;           // by set, binding, kind; push constants last with set = binding = ~0u
-    Stage rasterised = Stage::vertex;  // the shader's last stage before the rasteriser: in GL it converts depth
+    std::vector<Slot> slots;                   // by set, binding, kind; push constants last with set = binding = ~0u
+    std::vector<Interpolation> interpolation;  // by location, where all fragment modules that read it agree
+    Stage rasterised = Stage::vertex;          // the shader's last stage before the rasteriser: in GL it converts depth
     friend bool operator==(const SlotLayout&, const SlotLayout&) = default;
 };
 

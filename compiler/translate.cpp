@@ -86,6 +86,13 @@ private:
         std::vector<const Slot*> used;
         for (const Resource& r : reflection.resources) used.push_back(find_slot(layout, r));
         own.slots.clear();
+        // Only the last stage before the rasteriser asks how its outputs are read.
+        own.interpolation.clear();
+        for (const Interpolation& i : layout.interpolation) {
+            const bool written = std::any_of(reflection.outputs.begin(), reflection.outputs.end(),
+                                             [&](const Varying& v) { return v.location == i.location; });
+            if (written && reflection.stage == layout.rasterised) own.interpolation.push_back(i);
+        }
         for (const Slot& s : layout.slots)
             if (std::find(used.begin(), used.end(), &s) != used.end()) own.slots.push_back(s);
         return own;

@@ -20,8 +20,14 @@ Digest read_digest(WireReader& in) {
 Bytes write_slots(const SlotLayout& layout) {
     WireWriter out;
     out.u8(static_cast<uint8_t>(layout.rasterised));
+    out.u64(layout.interpolation.size());
+    for (const Interpolation& i : layout.interpolation) {
+        out.u32(i.location);
+        for (const bool flag : {i.flat, i.no_perspective, i.centroid, i.sample}) out.u8(flag);
+    }
     for (const Slot& s : layout.slots) {
         out.u8(static_cast<uint8_t>(s.kind));
+        out.u8(s.by_stage);
         out.text(s.name);
         for (const uint32_t n :
              {s.set, s.binding, s.buffer, s.texture, s.sampler, s.image, s.uav, s.metal_buffer, s.metal_texture, s.unit_offset})
