@@ -104,8 +104,21 @@ std::string text_of(const Rule& rule) {
     return (rule.forbid ? "forbid: " : "require: ") + rule.text + (rule.because.empty() ? "" : " (" + rule.because + ")");
 }
 
-// Names what leaves an object nothing: facts that exclude one another, or else a smallest set of rules.
-std::vector<std::string> blame(const Scene& scene, Space& space, const std::vector<std::pair<const SceneFact*, Set>>& facts) {
+// A shader's space with what its rules allow, compiled when the first object needs blaming.
+struct Blamed {
+    Space& space;
+    std::vector<Set> allowed = {};
+    const std::vector<Set>& rules() {
+        if (allowed.empty())
+            for (const Rule& rule : space.rules) allowed.push_back(allowed_by(space, rule));
+        return allowed;
+    }
+};
+
+// Names what leaves an object nothing: facts that exclude one another, or else a set of rules of which none can be spared.
+// Each round finds the rule at which nothing is left, after those found before; later rules are not needed.
+std::vector<std::string> blame(const Scene& scene, Blamed& blamed, const std::vector<std::pair<const SceneFact*, Set>>& facts) {
+    Space& space = blamed.space;
     Diagram& diagram = *space.diagram;
     for (size_t i = 0; i < facts.size(); ++i)
         for (size_t j = 0; j < i; ++j)
@@ -115,23 +128,23 @@ std::vector<std::string> blame(const Scene& scene, Space& space, const std::vect
                         " exclude one another"};
     Set wanted = Diagram::all();
     for (const auto& [fact, set] : facts) wanted = diagram.both(wanted, set);
-    std::vector<const Rule*> needed;
-    for (const Rule& rule : space.rules) needed.push_back(&rule);
-    for (size_t i = 0; i < needed.size();) {  // leave out each rule that is not needed to leave nothing
-        Set left = wanted;
-        for (size_t j = 0; j < needed.size() && left != Diagram::none(); ++j)
-            if (j != i) left = diagram.both(left, allowed_by(space, *needed[j]));
-        if (left == Diagram::none())
-            needed.erase(needed.begin() + static_cast<ptrdiff_t>(i));
-        else
-            ++i;
-    }
     std::vector<std::string> notes;
-    for (const Rule* rule : needed) notes.push_back("excluded by " + text_of(*rule) + " at " + to_string(rule->place));
+    for (size_t end = space.rules.size(); wanted != Diagram::none() && end != 0;) {
+        size_t last = 0;
+        for (Set left = wanted; last < end; ++last) {
+            left = diagram.both(left, blamed.rules()[last]);
+            if (left == Diagram::none()) break;
+        }
+        if (last == end) break;
+        wanted = diagram.both(wanted, blamed.rules()[last]);
+        notes.push_back("excluded by " + text_of(space.rules[last]) + " at " + to_string(space.rules[last].place));
+        end = last;
+    }
     return notes;
 }
 
-void apply_object(const Scene& scene, SceneObject& object, Space& space, SceneErrors& errors) {
+void apply_object(const Scene& scene, SceneObject& object, Blamed& blamed, SceneErrors& errors) {
+    Space& space = blamed.space;
     std::vector<std::pair<const SceneFact*, Set>> facts;
     bool good = true;
     for (const SceneFact& fact : scene.all)
@@ -148,7 +161,7 @@ void apply_object(const Scene& scene, SceneObject& object, Space& space, SceneEr
     object.drawn = space.legal;
     for (const auto& [fact, set] : facts) object.drawn = space.diagram->both(object.drawn, set);
     if (object.drawn == Diagram::none() && space.legal != Diagram::none() && !errors.full())
-        errors.at(object.spot, "this object can draw nothing with shader " + quoted(space.shader), blame(scene, space, facts));
+        errors.at(object.spot, "this object can draw nothing with shader " + quoted(space.shader), blame(scene, blamed, facts));
 }
 
 // Pairwise, so that no operand grows long before its time.
@@ -169,10 +182,12 @@ void apply_scenes(std::vector<Scene>& scenes, std::vector<std::unique_ptr<Space>
         return;
     }
     std::map<std::string, size_t> shaders;
+    std::vector<Blamed> blamed;
     std::vector<std::string> names;
     for (size_t i = 0; i < spaces.size(); ++i) {
         shaders.emplace(spaces[i]->shader, i);
         names.push_back(spaces[i]->shader);
+        blamed.push_back({*spaces[i]});
     }
     const size_t errors_before = diags.errors();
     std::vector<std::vector<Set>> drawn(spaces.size());
@@ -188,12 +203,15 @@ void apply_scenes(std::vector<Scene>& scenes, std::vector<std::unique_ptr<Space>
             }
             named[found->second] = true;
             if (!all_good) continue;
-            apply_object(scene, object, *spaces[found->second], errors);
+            apply_object(scene, object, blamed[found->second], errors);
             drawn[found->second].push_back(object.drawn);
         }
     }
     for (size_t i = 0; i < spaces.size(); ++i) {
         spaces[i]->needed = union_of(*spaces[i]->diagram, std::move(drawn[i]));
+        if (spaces[i]->diagram->exhausted())
+            diags.error({scenes.front().path, 0, 0}, "the objects of the scenes are too unlike: the set that shader " +
+                                                         quoted(spaces[i]->shader) + " needs grows past the diagram's limit");
         if (!named[i] && diags.errors() == errors_before)
             diags.warning({scenes.front().path, 0, 0},
                           "no object names shader " + quoted(spaces[i]->shader) + ": all of its variants are left out");

@@ -173,6 +173,36 @@ TEST(Scene, MistakesAgainstTheManifest) {
     }
 }
 
+// Of several rules, those that together leave nothing, and no other.
+TEST(Scene, BlamesRulesThatCannotBeSpared) {
+    World w(R"(kiln: 1
+axes:
+  a: {macro: A, values: bool}
+  b: {macro: B, values: bool}
+  c: {macro: C, values: bool}
+rules:
+  - forbid: b && c
+  - require: a -> b
+  - forbid: c && !a
+  - require: b -> a
+  - require: a -> !c
+shaders:
+  - {name: s, stages: {fragment: f}}
+)");
+    w.load("kiln_scene: 1\nobjects: [{shader: s, c: true}, {shader: s, a: true, c: true}, {shader: s, b: true, c: true}]\n");
+    w.apply();
+    EXPECT_EQ(w.problems(),
+              "2:20: this object can draw nothing with shader 's'\n"
+              "  excluded by forbid: c && !a at m.yaml:9:13\n"
+              "  excluded by require: a -> b at m.yaml:8:14\n"
+              "  excluded by forbid: b && c at m.yaml:7:13\n"
+              "2:42: this object can draw nothing with shader 's'\n"
+              "  excluded by require: a -> b at m.yaml:8:14\n"
+              "  excluded by forbid: b && c at m.yaml:7:13\n"
+              "2:73: this object can draw nothing with shader 's'\n"
+              "  excluded by forbid: b && c at m.yaml:7:13\n");
+}
+
 TEST(Scene, SaysWhyAVariantIsNotNeeded) {
     World w;
     w.load(R"(kiln_scene: 1
