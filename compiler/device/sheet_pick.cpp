@@ -23,7 +23,7 @@ std::vector<size_t> pick_pipelines(const TableShader& shader, size_t count) {
                 for (size_t b = a; b < d.size(); ++b) {
                     const auto found = used.find({a, d[a], b, d[b]});
                     const double times = found == used.end() ? 0 : found->second;
-                    gain += 1.0 / ((1 + times) * (1 + times));
+                    gain += 1.0 / (1 + times);
                 }
             if (gain > best_gain) best_gain = gain, best = i;
         }

@@ -131,22 +131,30 @@ std::shared_ptr<const ImageData> charts(uint32_t size, bool mips, const std::fun
     return image;
 }
 
-bool on_band(const Point& p) { return p.sphere && std::fabs(p.position.y - 1.0) < 0.16; }
+bool on_cap(const Point& p) { return p.sphere && p.position.y > 1.62; }  // of metal
+bool on_band(const Point& p) { return p.sphere && std::fabs(p.position.y - 1.0) < 0.13; }
 bool on_checker(const Point& p) {
     return !p.sphere && ((static_cast<int>(std::floor(p.position.x)) + static_cast<int>(std::floor(p.position.z))) & 1) != 0;
 }
 
-Texel base_texel(const Point& p) {
-    if (on_band(p)) return {1.0, 0.71, 0.29, 1};
-    if (p.sphere) return {0.55, 0.09, 0.07, 1};
-    return on_checker(p) ? Texel{0.34, 0.36, 0.38, 1} : Texel{0.62, 0.62, 0.60, 1};
-}
+constexpr Texel gold{1.0, 0.71, 0.29, 1};
 Texel grey(double v) { return {v, v, v, 1}; }
+Texel base_texel(const Point& p) {
+    if (on_cap(p)) return gold;
+    if (on_band(p)) return {0.78, 0.72, 0.60, 1};
+    if (p.sphere) return {0.55, 0.09, 0.07, 1};
+    return on_checker(p) ? Texel{0.30, 0.32, 0.35, 1} : Texel{0.60, 0.60, 0.58, 1};
+}
+// Where no map says what is metal, metal is what has no diffuse colour.
+Texel diffuse_texel(const Point& p) { return on_cap(p) ? grey(0.0) : base_texel(p); }
 Texel specular_texel(const Point& p) {
-    if (on_band(p)) return {1.0, 0.71, 0.29, 1};
+    if (on_cap(p)) return gold;
     return p.sphere ? grey(0.045) : grey(0.03);
 }
-double roughness_at(const Point& p) { return on_band(p) ? 0.38 : p.sphere ? 0.28 : 0.75; }
+double roughness_at(const Point& p) {
+    if (on_cap(p)) return 0.45;
+    return on_band(p) ? 0.6 : p.sphere ? 0.28 : 0.75;
+}
 
 // Light from a blue sky and a warm lamp behind the camera, as zeroth and first moments of radiance; the sphere takes its part
 // of the sky from the plane (r^2 / d^2 of the hemisphere), the plane its part from the sphere's lower half.
@@ -313,8 +321,9 @@ std::optional<Values> scalar_named(const std::string& n, const SheetScene& scene
     if (n == "shadownear") return Values{shadow_near};
     if (n == "shadowfar") return Values{shadow_far};
     if (has(n, {"shadowtexel"}))
-        return Values{(scene.directional ? 2 * sun_half_side : 2 * std::tan(spot_half_angle * 1.15)) / shadow_size};
-    if (has(n, {"bias"})) return Values{1e-4};
+        return Values{(scene.directional ? 2 * sun_half_side : 2.0) / shadow_size};  // a cube's face: the widest
+
+    if (has(n, {"bias"})) return Values{2e-4};
     if (n == "lightmaprange") return Values{1};
     if (has(n, {"shininess", "exponent"})) return Values{60};
     if (has(n, {"dielectric"})) return Values{0.5};
@@ -354,10 +363,11 @@ std::shared_ptr<const ImageData> image_named(const Resource& r, const SheetScene
         if (has(n, {"l0"})) return chart(l0_texel, true);
         return chart(flat_texel, true);
     }
-    if (has(n, {"base", "albedo", "diffuse", "color", "colour"})) return chart(base_texel);
+    if (has(n, {"base", "albedo", "diffuse", "color", "colour"}))
+        return scene.metal_map ? chart(base_texel) : once(n + " diffuse", [&] { return charts(map_size, true, diffuse_texel); });
     if (has(n, {"rough"})) return chart([](const Point& p) { return grey(roughness_at(p)); });
     if (has(n, {"gloss", "smooth"})) return chart([](const Point& p) { return grey(1 - roughness_at(p)); });
-    if (has(n, {"metal"})) return chart([](const Point& p) { return grey(on_band(p) ? 1.0 : 0.0); });
+    if (has(n, {"metal"})) return chart([](const Point& p) { return grey(on_cap(p) ? 1.0 : 0.0); });
     if (has(n, {"spec"})) return chart(specular_texel);
     if (has(n, {"normal", "bump"})) return chart([](const Point&) { return Texel{0.5, 0.5, 1.0, 1}; });
     if (has(n, {"occlusion", "ao"})) return chart([](const Point&) { return grey(1.0); });
@@ -405,8 +415,11 @@ void fill_members(Bytes& block, const Resource& r, const SheetScene& scene) {
 
 }  // namespace
 
-Inputs scene_inputs(const std::vector<StageCode>& stages, const SheetScene& scene) {
+Inputs scene_inputs(const std::vector<StageCode>& stages, const SheetScene& wanted) {
     Inputs out = make_inputs(stages, InputOptions());
+    SheetScene scene = wanted;
+    for (const StageCode& s : stages)
+        for (const Resource& r : s.reflection.resources) scene.metal_map |= has(plain(r.name), {"metal"});
     for (const StageCode& s : stages) {
         if (s.stage == Stage::vertex && !s.partner && !s.reflection.inputs.empty()) fill_attributes(out, s.reflection);
         for (const Resource& r : s.reflection.resources) {

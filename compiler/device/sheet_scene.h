@@ -8,6 +8,7 @@ namespace kiln {
 
 struct SheetScene {
     bool directional = false;  // the light is a sun; else it stands somewhere and is given in candela
+    bool metal_map = false;    // filled in by scene_inputs(): some texture says what is metal
 };
 
 // The scene's inputs for these stages. What no name of the scene fits keeps its generated value (inputs.h).
