@@ -68,6 +68,8 @@ public:
     Reader(const Yaml& yaml, YamlErrors& errors, Manifest& out) : in_{yaml, errors}, yaml_(yaml), errors_(errors), out_(out) {}
 
     void read() {
+        for (const Yaml::Pair& pair : yaml_.pairs(0))
+            if (yaml_.value(pair.key) == "kiln_scene") return errors_.at(pair.key, "this is a scene, not a manifest");
         Fields top(yaml_, errors_, 0, "a manifest",
                    {"kiln", "name", "include", "targets", "options", "axes", "rules", "shaders"});
         if (!top.is_map()) return;

@@ -34,7 +34,7 @@ OptionsRead read_options(ManifestText in, Yaml::Node node, const OptionsRead& ba
     Options& out = read.options;
     if (const auto* f = fields.find("undefined_macros"))
         if (const auto choice = read_choice(in.yaml, in.errors, f->value, "undefined_macros", {"error", "zero"}))
-            out.undefined_macros = static_cast<UndefinedMacros>(*choice == 0 ? UndefinedMacros::error : UndefinedMacros::zero);
+            out.undefined_macros = *choice == 0 ? UndefinedMacros::error : UndefinedMacros::zero;
     if (const auto* f = fields.find("optimise"))
         if (const auto choice = read_choice(in.yaml, in.errors, f->value, "optimise", {"none", "performance", "size"}))
             out.optimise = *choice == 0 ? Optimise::none : *choice == 1 ? Optimise::performance : Optimise::size;

@@ -12,6 +12,8 @@ public:
     SceneReader(const Yaml& yaml, YamlErrors& errors, Scene& out) : yaml_(yaml), errors_(errors), out_(out) {}
 
     void read() {
+        for (const Yaml::Pair& pair : yaml_.pairs(0))
+            if (yaml_.value(pair.key) == "kiln") return errors_.at(pair.key, "this is a manifest, not a scene");
         Fields top(yaml_, errors_, 0, "a scene", {"kiln_scene", "name", "all", "objects"});
         if (!top.is_map()) return;
         if (const auto* f = top.need("kiln_scene"))

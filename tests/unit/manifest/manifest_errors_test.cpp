@@ -180,6 +180,7 @@ TEST(ManifestErrors, Top) {
               "1:7: this program reads manifests of version 1 ('kiln: 1'), this is the text '2'\n");
     EXPECT_EQ(problems("kiln: '1'\nshaders:\n  - {name: s, stages: {vertex: v}}\n"),
               "1:7: this program reads manifests of version 1 ('kiln: 1'), this is the text '1'\n");
+    EXPECT_EQ(problems("name: x\nkiln_scene: 1\nobjects: []\n"), "2:1: this is a scene, not a manifest\n");
     EXPECT_EQ(problems("name: x\n"), "1:1: a manifest needs 'kiln'\n1:1: a manifest needs 'shaders'\n");
     EXPECT_EQ(problems("- a\n"), "1:1: a manifest must be a map, this is a list\n");
     EXPECT_EQ(problems("just text\n"), "1:1: a manifest must be a map, this is the text 'just text'\n");

@@ -106,9 +106,8 @@ TEST(Scene, MistakesInTheFile) {
     const std::pair<const char*, const char*> table[] = {
         {"kiln_scene: 2\nobjects: []\n",
          "1:13: this program reads scenes of version 1 ('kiln_scene: 1'), this is the text '2'\n"},
-        {"kiln: 1\nobjects: []\n",
-         "1:1: a scene needs 'kiln_scene'\n"
-         "1:1: unknown key 'kiln' in a scene (known: kiln_scene, name, all, objects)\n"},
+        {"kiln: 1\nobjects: []\n", "1:1: this is a manifest, not a scene\n"},
+        {"objects: []\n", "1:1: a scene needs 'kiln_scene'\n"},
         {"kiln_scene: 1\n", "1:1: a scene needs 'objects'\n"},
         {"kiln_scene: 1\nobjects: {}\n", "2:10: objects must be a list, this is a map\n"},
         {"kiln_scene: 1\nobjects: [surface]\n",
