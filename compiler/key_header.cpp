@@ -133,9 +133,11 @@ std::string write_key_header(const TableInput& input) {
            " was written with it.\n#include <cstdint>\n\n";
     std::set<std::string> files, shaders;
     out << "namespace kiln_keys::" << identifier(input.manifest->name, files) << " {\n\n";
-    for (const auto& stages : stages_by_shader(input.stages)) {
-        const Space& space = *input.stages[stages[0]].space;
-        write_shader(out, space, identifier(space.shader, shaders));
+    std::vector<const Space*> spaces;
+    for (const auto& stages : stages_by_shader(input.stages)) spaces.push_back(input.stages[stages[0]].space);
+    spaces.insert(spaces.end(), input.left_out.begin(), input.left_out.end());
+    for (const Space* space : spaces) {
+        write_shader(out, *space, identifier(space->shader, shaders));
         out << "\n";
     }
     std::set<std::string> again;

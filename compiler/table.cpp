@@ -26,7 +26,9 @@ public:
         KILN_TRY(texts());
         modules();
         const auto shaders = stages_by_shader(in_.stages);
-        for (uint32_t i = 0; i < shaders.size(); ++i) KILN_TRY(shader(i, shaders[i]));
+        for (uint32_t i = 0; i < shaders.size(); ++i) KILN_TRY(shader(i, *in_.stages[shaders[i][0]].space, shaders[i]));
+        auto next = static_cast<uint32_t>(shaders.size());
+        for (Space* space : in_.left_out) KILN_TRY(shader(next++, *space, {}));
         return out_.file();
     }
 
@@ -100,8 +102,7 @@ private:
         return out_.one(kf_diagrams, kf_diagram_record{at.first, at.count, nodes.root, leaves});
     }
 
-    Status shader(uint32_t index, const std::vector<size_t>& stages) {
-        Space& space = *in_.stages[stages[0]].space;
+    Status shader(uint32_t index, Space& space, const std::vector<size_t>& stages) {
         const KeyLayout layout = key_layout(space.axes);
         std::vector<uint32_t> fields;
         for (const KeyField& f : layout.fields) fields.push_back(f.packed());

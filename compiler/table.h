@@ -12,6 +12,7 @@ struct TableInput {
     std::vector<Target> targets;
     std::vector<std::string> scenes;  // names, for what a miss says; empty: everything legal is needed
     std::vector<StageClasses> stages;
+    std::vector<Space*> left_out;  // shaders of which nothing is needed: in the table without stages, so that a miss is told
     const Modules* modules = nullptr;
     const Artifacts* artifacts = nullptr;
     const Interfaces* interfaces = nullptr;

@@ -80,6 +80,8 @@ kiln_text kiln_get_scene(const kiln_table* table, uint32_t index);
 typedef struct kiln_diagram { /* private */
     const uint8_t* nodes;
     uint32_t words, root, leaves;
+    const uint8_t* cells; /* not NULL: all of it is one array of 16-bit leaves, indexed by one field */
+    uint32_t field, size;
 } kiln_diagram;
 
 typedef struct kiln_shader { /* a handle: fetch it once, look up with it often. The table must stay where it is. */

@@ -1,6 +1,7 @@
 /* Keys and lookups. A lookup is a few masked compares (is this a key at all), a walk of the shader's status diagram, and a
- * walk a stage. A node is one load of its head, one digit from the key, one load of the next reference. Nothing here trusts
- * the table: a node must end inside its diagram, and references only go forward, so a walk ends. */
+ * walk a stage. A node is one load of its head, one digit from the key, one load of the next reference; a diagram that is one
+ * array was recognised when the shader was fetched and is one load. Nothing here trusts the table: a node must end inside its
+ * diagram, and references only go forward, so a walk ends. */
 #include "compiler/runtime/internal.h"
 
 uint32_t kiln_walk(const kiln_diagram* d, const uint64_t* key, uint32_t key_words) {
@@ -48,6 +49,16 @@ uint32_t kiln_walk(const kiln_diagram* d, const uint64_t* key, uint32_t key_word
     }
     ref &= ~KF_LEAF;
     return ref < d->leaves ? ref : KF_NO_LEAF;
+}
+
+static inline uint32_t leaf_of(const kiln_diagram* d, const uint64_t* key, uint32_t key_words) {
+    uint16_t value;
+    uint32_t index;
+    if (d->cells == NULL) return kiln_walk(d, key, key_words);
+    index = kiln_digit(key, key_words, d->field);
+    if (index >= d->size) return KF_NO_LEAF;
+    memcpy(&value, d->cells + (size_t)2 * index, 2);
+    return value < d->leaves ? value : KF_NO_LEAF;
 }
 
 static int field_sound(uint32_t field, uint32_t key_words) {
@@ -109,7 +120,16 @@ int kiln_diagram_at(const kiln_table* table, uint32_t index, kiln_diagram* out) 
     out->words = r.words;
     out->root = r.root;
     out->leaves = r.leaves;
-    return out->nodes != NULL;
+    out->cells = NULL;
+    out->field = out->size = 0;
+    if (out->nodes == NULL) return 0;
+    if (r.root == 0 && r.words >= 4 && kiln_u32(out->nodes) == ((uint32_t)kf_dense16 << 28 | 1u) &&
+        kiln_u32(out->nodes + 12) == 1 && ((uint64_t)kiln_u32(out->nodes + 4) + 1) / 2 <= r.words - 4) {
+        out->cells = out->nodes + 16;
+        out->field = kiln_u32(out->nodes + 8);
+        out->size = kiln_u32(out->nodes + 4);
+    }
+    return 1;
 }
 
 kiln_status kiln_get_shader(const kiln_table* table, uint32_t index, kiln_shader* shader) {
@@ -190,7 +210,7 @@ static int key_valid(const kiln_shader* s, const uint64_t* key) {
 
 kiln_status kiln_check(const kiln_shader* s, const uint64_t* key) {
     if (!key_valid(s, key)) return KILN_BAD_KEY;
-    switch (kiln_walk(&s->private_.status, key, s->key_words)) {
+    switch (leaf_of(&s->private_.status, key, s->key_words)) {
         case kf_leaf_forbidden:
             return KILN_FORBIDDEN;
         case kf_leaf_not_needed:
@@ -206,7 +226,7 @@ kiln_status kiln_find(const kiln_shader* s, const uint64_t* key, uint32_t* modul
     const kiln_status status = kiln_check(s, key);
     if (status != KILN_OK) return status;
     for (uint32_t i = 0; i < s->stage_count; ++i) {
-        const uint32_t leaf = kiln_walk(&s->private_.stage[i], key, s->key_words);
+        const uint32_t leaf = leaf_of(&s->private_.stage[i], key, s->key_words);
         if (leaf >= s->module_count) return KILN_DAMAGED;
         modules[i] = kiln_u32(s->private_.modules + (size_t)4 * leaf);
     }
@@ -219,7 +239,7 @@ kiln_status kiln_find_stage(const kiln_shader* s, const uint64_t* key, uint32_t 
     if (stage_index >= s->stage_count) return KILN_ABSENT;
     status = kiln_check(s, key);
     if (status != KILN_OK) return status;
-    leaf = kiln_walk(&s->private_.stage[stage_index], key, s->key_words);
+    leaf = leaf_of(&s->private_.stage[stage_index], key, s->key_words);
     if (leaf >= s->module_count) return KILN_DAMAGED;
     *module = kiln_u32(s->private_.modules + (size_t)4 * leaf);
     return KILN_OK;

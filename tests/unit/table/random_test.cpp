@@ -221,6 +221,27 @@ TEST(Writer, ClassesThatOverlapAreRefused) {
     EXPECT_EQ(files.error().message, "two classes of the fragment stage of s claim the same variant");
 }
 
+TEST(Writer, AShaderOfWhichNothingIsNeededSaysSo) {
+    Sample sample = small_sample(), other({{"unused", {boolean("a")}, {}, {{Stage::fragment, {}, {}, {"a == a"}}}, "a && !a"}});
+    TableInput input = sample.input();
+    input.left_out = {&other.space(0)};
+    const auto files = write_table(input);
+    ASSERT_TRUE(files.ok());
+    kiln_table table;
+    kiln_shader s;
+    ASSERT_EQ(kiln_open(&table, files->table.data(), files->table.size()), KILN_OK);
+    EXPECT_EQ(kiln_verify(&table, nullptr), KILN_OK);
+    ASSERT_EQ(kiln_find_shader(&table, "unused", &s), KILN_OK);
+    uint64_t key[1] = {};
+    EXPECT_EQ(s.stage_count, 0u);
+    EXPECT_EQ(kiln_check(&s, key), KILN_NOT_NEEDED);
+    auto view = TableView::open(files->table);
+    auto proof = read_proof(files->proof, files->table);
+    ASSERT_TRUE(view.ok() && proof.ok());
+    EXPECT_TRUE(check_proof(**view, *proof).empty());
+    EXPECT_NE(write_key_header(input).find("namespace unused"), std::string::npos);
+}
+
 TEST(Writer, AxesWithoutValuesToChooseAndKeysOfSeveralWords) {
     SampleShader shader;
     shader.name = "wide";
