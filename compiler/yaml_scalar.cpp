@@ -19,7 +19,12 @@ public:
         ++at_;
         flow(quote);
     }
-    void block();
+    // Reads a block's header and goes to its first line. The indentation that the header states relative to the parent's; 0:
+    // none.
+    size_t block_header();
+    // Of the first line that is not blank.
+    size_t block_indent() const;
+    void block(size_t indent);
 
     std::string value;
     std::vector<uint32_t> origin;
@@ -41,6 +46,7 @@ private:
     std::string_view text_;
     size_t at_;
     size_t wanted_;  // nothing past the known length needs decoding
+    bool folded_ = false;
 };
 
 void append_utf8(std::string& out, uint32_t c) {
@@ -132,30 +138,28 @@ void Decoder::flow(char quote) {
     }
 }
 
-// Literal and folded block scalars. The indentation is the header's digit plus the parent's, or that of the first line
-// that is not blank: only the latter is decoded, the former gives no answer.
-void Decoder::block() {
-    const bool folded = look() == '>';
+size_t Decoder::block_header() {
+    folded_ = look() == '>';
     ++at_;
-    while (!done() && !at_break()) {
-        if (look() >= '1' && look() <= '9') return;
-        if (look() == '#') break;
-        ++at_;
-    }
+    size_t stated = 0;
+    for (; !done() && !at_break() && look() != '#'; ++at_)
+        if (look() >= '1' && look() <= '9') stated = static_cast<size_t>(look() - '0');
     while (!done() && !at_break()) ++at_;
-    if (done()) return;
-    skip_break();
-    size_t indent = 0, probe = at_;
-    for (;;) {
+    if (!done()) skip_break();
+    return stated;
+}
+
+size_t Decoder::block_indent() const {
+    for (size_t probe = at_;;) {
         size_t column = 0;
         while (probe < text_.size() && text_[probe] == ' ') ++probe, ++column;
-        if (probe < text_.size() && (text_[probe] == '\n' || text_[probe] == '\r')) {
-            probe += text_[probe] == '\r' ? 2 : 1;
-            continue;
-        }
-        indent = column;
-        break;
+        if (probe >= text_.size() || (text_[probe] != '\n' && text_[probe] != '\r')) return column;
+        probe += text_[probe] == '\r' ? 2 : 1;
     }
+}
+
+// Literal and folded block scalars.
+void Decoder::block(size_t indent) {
     bool previous_more_indented = true;
     bool first = true;
     while (value.size() <= wanted_) {
@@ -173,7 +177,7 @@ void Decoder::block() {
         const bool more_indented = !ended && blank(look());
         if (!first) {
             // The break that ended the previous line, and the blank lines after it.
-            const bool join = folded && !ended && !previous_more_indented && !more_indented;
+            const bool join = folded_ && !ended && !previous_more_indented && !more_indented;
             const size_t break_at = breaks_from - (breaks_from >= 2 && text_[breaks_from - 2] == '\r' ? 2 : 1);
             if (!join)
                 put('\n', break_at);
@@ -193,30 +197,40 @@ void Decoder::block() {
     }
 }
 
-}  // namespace
-
-std::vector<uint32_t> scalar_offsets(std::string_view text, size_t offset, YamlStyle style, std::string_view value) {
-    Decoder decoder(text, offset, value.size());
-    switch (style) {
-        case YamlStyle::plain:
-            decoder.plain();
-            break;
-        case YamlStyle::single_quoted:
-            decoder.quoted('\'');
-            break;
-        case YamlStyle::double_quoted:
-            decoder.quoted('"');
-            break;
-        case YamlStyle::block:
-            decoder.block();
-            break;
-    }
+// The origins, when what was decoded begins with the value; what follows it (a plain scalar's neighbours, stripped line ends) is
+// not part of it.
+std::vector<uint32_t> origins(Decoder& decoder, size_t offset, std::string_view value) {
+    if (std::string_view(decoder.value).substr(0, value.size()) != value) return {};
     std::vector<uint32_t> origin = std::move(decoder.origin);
-    // What lies past the known value (a plain scalar's neighbours, stripped line ends) is not part of it.
-    if (decoder.value.size() < value.size() || std::string_view(decoder.value).substr(0, value.size()) != value) return {};
     origin.resize(value.size());
     origin.push_back(origin.empty() ? static_cast<uint32_t>(offset) : origin.back() + 1);
     return origin;
+}
+
+// A stated indentation is relative to the parent's, which the scalar itself does not show: the one is right that gives the value.
+std::vector<uint32_t> block_origins(std::string_view text, size_t offset, std::string_view value) {
+    constexpr size_t most_tries = 100;
+    Decoder header(text, offset, value.size());
+    const size_t stated = header.block_header(), seen = header.block_indent();
+    const size_t first = stated == 0 ? seen : stated;
+    for (size_t indent = first; indent <= seen && indent < first + most_tries; ++indent) {
+        Decoder body = header;
+        body.block(indent);
+        if (std::vector<uint32_t> found = origins(body, offset, value); !found.empty()) return found;
+    }
+    return {};
+}
+
+}  // namespace
+
+std::vector<uint32_t> scalar_offsets(std::string_view text, size_t offset, YamlStyle style, std::string_view value) {
+    if (style == YamlStyle::block) return block_origins(text, offset, value);
+    Decoder decoder(text, offset, value.size());
+    if (style == YamlStyle::plain)
+        decoder.plain();
+    else
+        decoder.quoted(style == YamlStyle::single_quoted ? '\'' : '"');
+    return origins(decoder, offset, value);
 }
 
 }  // namespace kiln

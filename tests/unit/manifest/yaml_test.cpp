@@ -138,8 +138,8 @@ TEST(Yaml, PlacesInsideScalars) {
         {"k: >\n  ab\n  c\n", "a2:3 b2:4 _2:5 c3:3 \\n3:4 $4:1"},
         {"k: >-\n  ab\n\n  c\n", "a2:3 b2:4 \\n3:1 c4:3 $4:4"},
         {"k: | # comment\r\n  ab\r\n  c\r\n", "a2:3 b2:4 \\n2:5 c3:3 \\n3:4 $3:5"},
-        // A block with its indentation in the header: only the start is known.
-        {"k: |2\n    a\n", "_1:4 _1:4 a1:4 \\n1:4 $1:4"},
+        {"k: |2\n    a\n", "_2:3 _2:4 a2:5 \\n2:6 $3:1"},
+        {"k: >-1\n  a\n b\n", "_2:2 a2:3 \\n2:4 b3:2 $3:3"},
     };
     for (const auto& [text, expected] : table) EXPECT_EQ(bytes_of(text), expected) << text;
 }
@@ -150,8 +150,9 @@ TEST(Yaml, PlacesInsideRandomScalars) {
     const auto below = [&](unsigned n) { return static_cast<size_t>(random() % n); };
     size_t mapped = 0;
     for (int round = 0; round < 20000; ++round) {
-        const char* const head[] = {"k: ", "k: '", "k: \"", "k: |\n  ", "k: >\n  ", "k: |-\n  ", "k: >+\n    "};
-        const size_t style = below(7);
+        const char* const head[] = {"k: ",       "k: '",        "k: \"",     "k: |\n  ",   "k: >\n  ",
+                                    "k: |-\n  ", "k: >+\n    ", "k: |1\n  ", "k: >2-\n   "};
+        const size_t style = below(9);
         static const char* const pieces[] = {"a",   "bc", " ",  "  ",  "\n  ",  "\n\n  ", "\n    ", "\r\n  ",
                                              "(x)", "&&", "->", "\\n", "\\x41", "''",     "\\\"",   "\n   \n  "};
         std::string text = head[style];
