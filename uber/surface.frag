@@ -29,12 +29,23 @@ void main() {
 #include "lib/math.glsl"
 #include "lib/vectors.glsl"
 #include "lib/materials.glsl"
-#include "lib/octahedral.glsl"
+// The rest only where it is called: a system's text then belongs to its own variants, and editing it recompiles no others.
+#if MATERIAL == MATERIAL_BLINN_PHONG
 #include "lib/blinn_phong.glsl"
+#elif PASS == PASS_FORWARD && LIGHT_TYPE != LIGHT_NONE
 #include "lib/cook_torrance.glsl"
-#include "lib/lights.glsl"
-#include "lib/shadow_map.glsl"
+#endif
+#if LIGHTMAP == LIGHTMAP_SH_LQ || LIGHTMAP == LIGHTMAP_SH_HQ
 #include "lib/sh_lightmap.glsl"
+#endif
+#if PASS == PASS_GBUFFER
+#include "lib/octahedral.glsl"
+#elif LIGHT_TYPE == LIGHT_POINT || LIGHT_TYPE == LIGHT_SPOT
+#include "lib/lights.glsl"
+#endif
+#if SHADOW == SHADOW_HARD
+#include "lib/shadow_map.glsl"
+#endif
 
 layout(set = 1, binding = 1) uniform sampler2D base_map;         // sRGB; diffuse, for pbr_mr base colour
 layout(set = 1, binding = 2) uniform sampler2D specular_map;     // sRGB; blinn_phong: ks, pbr_sg: F0
