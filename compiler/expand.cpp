@@ -394,10 +394,11 @@ bool Expander::expand_argument(const std::vector<Token>& argument, std::vector<T
         out = argument;
         return true;
     }
-    if (++depth_ > Preprocessing::max_depth) {
+    if (pp_.depth >= Preprocessing::max_depth) {
         die(argument.front(), "macro calls nested more than " + std::to_string(Preprocessing::max_depth) + " deep");
         return false;
     }
+    ++pp_.depth;
     Input marker;
     marker.source = Source::marker;
     inputs_.push_back(std::move(marker));
@@ -424,7 +425,7 @@ bool Expander::expand_argument(const std::vector<Token>& argument, std::vector<T
         token.flags &= static_cast<uint8_t>(~Token::from_body);
         out.push_back(token);
     }
-    --depth_;
+    --pp_.depth;
     return token.kind == Tok::marker;
 }
 

@@ -33,12 +33,13 @@ struct Preprocessing {
     Spellings& spellings;
     Macros& macros;
     Findings& findings;
-    int version = 100;
-    bool es = true;
+    int version = 110;
+    bool es = false;
     std::vector<LogicalPlace> places;            // of the file being read; the sets partition the variants
     std::map<uint32_t, uint32_t> axis_of_macro;  // spelling -> axis
     std::vector<bool> axes_read;
     uint64_t work = 0;  // tokens scanned
+    size_t depth = 0;   // calls and parentheses open now, over everything nested
 
     static constexpr uint64_t max_work = 16'000'000;
     static constexpr size_t max_depth = 400;  // nested macro calls, parentheses in #if
@@ -112,7 +113,6 @@ private:
     std::vector<Input> inputs_;
     Disagreement disagreement_;
     bool dead_ = false;
-    size_t depth_ = 0;
 };
 
 }  // namespace kiln

@@ -15,6 +15,8 @@ namespace kiln {
 
 namespace {
 
+constexpr size_t max_pairs = 4'000'000;  // of values that one operator combines
+
 int32_t wrap(int64_t v) { return static_cast<int32_t>(static_cast<uint32_t>(static_cast<uint64_t>(v))); }
 
 struct Operator {
@@ -80,8 +82,7 @@ public:
           at_(at),
           set_(set),
           live_(live),
-          expander_(pp_, set, begin, end, Expander::Ends::at_newline,
-                    [this](Token& t) { return e_.symbol_for(t, set_, depth_); }) {}
+          expander_(pp_, set, begin, end, Expander::Ends::at_newline, [this](Token& t) { return e_.symbol_for(t, set_); }) {}
 
     Reading run(bool whole) {
         Reading out;
@@ -217,11 +218,11 @@ private:
     }
 
     Token expression(Token token, int precedence, Set live, Guarded& value) {
-        if (++depth_ > Preprocessing::max_depth) {
-            --depth_;
+        if (pp_.depth >= Preprocessing::max_depth) {
             expander_.die(token, "expression nested more than " + std::to_string(Preprocessing::max_depth) + " deep");
             return token;
         }
+        ++pp_.depth;
         token = to_operand(token, live);
         if (!failed_ && !expander_.stopped()) token = operand(token, live, value);
         token = to_operand(token, live);
@@ -248,7 +249,7 @@ private:
                 value = Guarded::of_parts(pp_.diagram, {{holds, 1}, {pp_.diagram.minus(set_, holds), 0}});
                 continue;
             }
-            auto result = Guarded::apply(pp_.diagram, set_, value, right, op->apply, e_.limit_);
+            auto result = Guarded::apply(pp_.diagram, set_, value, right, op->apply, max_pairs);
             if (!result) {
                 e_.too_many_ = true;
                 failed_ = true;
@@ -256,7 +257,7 @@ private:
             }
             value = std::move(*result);
         }
-        --depth_;
+        --pp_.depth;
         return token;
     }
 
@@ -264,7 +265,6 @@ private:
     Preprocessing& pp_;
     Token at_;
     Set set_, live_;
-    size_t depth_ = 0;
     bool failed_ = false;
     std::vector<Undefined> undefined_;
     Expander expander_;
@@ -280,8 +280,9 @@ void Evaluator::note_definition_read(uint32_t name, Set set) {
 }
 
 // Whether every meaning of a name is one operand by itself, so that its value may stand for its text.
-bool Evaluator::can_stand_for_text(uint32_t name, size_t depth) const {
-    if (depth > 32) return false;
+bool Evaluator::can_stand_for_text(uint32_t name, size_t& budget) const {
+    if (budget == 0) return false;
+    --budget;
     for (const Macros::Meaning& m : pp_.macros.meanings(name)) {
         if (m.def == 0) continue;
         const MacroDef& def = pp_.macros.def(m.def);
@@ -290,12 +291,12 @@ bool Evaluator::can_stand_for_text(uint32_t name, size_t depth) const {
         const uint32_t inner = def.body.front().text;
         if (inner == spelling::defined_ || inner == spelling::line_macro || inner == spelling::file_macro || inner == name)
             return false;
-        if (inner != spelling::version_macro && !can_stand_for_text(inner, depth + 1)) return false;
+        if (inner != spelling::version_macro && !can_stand_for_text(inner, budget)) return false;
     }
     return true;
 }
 
-bool Evaluator::symbol_for(Token& token, Set set, size_t depth) {
+bool Evaluator::symbol_for(Token& token, Set set) {
     const uint32_t name = token.text;
     if (memo_generation_ != pp_.macros.generation()) {
         memo_.clear();
@@ -306,7 +307,8 @@ bool Evaluator::symbol_for(Token& token, Set set, size_t depth) {
     if (known != memo_.end()) {
         id = known->second;
     } else {
-        if (depth + depth_ > Preprocessing::max_depth || !can_stand_for_text(name, 0)) return false;
+        size_t budget = 1000;
+        if (pp_.depth >= Preprocessing::max_depth || !can_stand_for_text(name, budget)) return false;
         Symbol symbol;
         const std::vector<Macros::Meaning> meanings = pp_.macros.split(name, set);
         symbol.name = name;
@@ -337,9 +339,9 @@ bool Evaluator::symbol_for(Token& token, Set set, size_t depth) {
             std::vector<Token> body = def.body;
             for (Token& t : body) t.line = token.line, t.column = token.column, t.file = token.file;
             pp_.macros.set_busy(name, true);
-            ++depth_;
+            ++pp_.depth;
             Reading reading = read(token, body.data(), body.data() + body.size(), m.set, m.set, true);
-            --depth_;
+            --pp_.depth;
             pp_.macros.set_busy(name, false);
             if (reading.disagreement.kind != Disagreement::nothing) {
                 inner_ = reading.disagreement;

@@ -55,15 +55,14 @@ private:
         std::vector<Token> rest;
     };
     Reading read(const Token& at, const Token* begin, const Token* end, Set set, Set live, bool whole);
-    bool symbol_for(Token& token, Set set, size_t depth);
-    bool can_stand_for_text(uint32_t name, size_t depth) const;
+    bool symbol_for(Token& token, Set set);
+    bool can_stand_for_text(uint32_t name, size_t& budget) const;
     void report(const std::vector<Undefined>& undefined);
 
     Preprocessing& pp_;
     bool undefined_is_zero_;
     size_t limit_;
     bool too_many_ = false, failed_ = false;
-    size_t depth_ = 0;
     std::vector<Symbol> symbols_;
     std::map<std::pair<uint32_t, Set>, uint32_t> memo_;  // (macro, set) -> symbol
     uint64_t memo_generation_ = ~uint64_t{0};

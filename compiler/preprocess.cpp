@@ -8,6 +8,7 @@
 #include "compiler/preprocess.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace kiln {
 
@@ -324,28 +325,27 @@ const Token* Preprocessor::invocation(const Token* at, const Token* end, Expande
         const Token* at;
         std::vector<Token> out;
     };
-    std::vector<Part> parts{{here_, at, {}}};
-    // Moves on whatever is furthest behind until all parts stand at the same place.
-    for (;;) {
+    std::vector<Part> todo{{here_, at, {}}}, parts;
+    while (!todo.empty() && !over_limit_) {
+        Part part = std::move(todo.back());
+        todo.pop_back();
+        Disagreement why;
+        if (step(part.set, part.at, end, ends, part.out, why)) {
+            parts.push_back(std::move(part));
+        } else {
+            const std::vector<Set> sets = pp_.split(why, part.set);
+            for (size_t i = sets.size(); i-- > 0;) todo.push_back({sets[i], part.at, part.out});
+            count_states(sets.size(), sets.front());
+        }
+        if (!todo.empty()) continue;
+        // Parts that a call took further than others wait for them.
         const Token* furthest = nullptr;
         for (const Part& p : parts)
             if (p.at != nullptr && (furthest == nullptr || p.at > furthest)) furthest = p.at;
-        const auto behind = std::find_if(parts.begin(), parts.end(), [&](const Part& p) {
-            return p.at != nullptr && (p.at < furthest || (p.at == at && p.out.empty()));
-        });
-        if (behind == parts.end() || over_limit_) break;
-        const Token* const from = behind->at;
-        Disagreement why;
-        if (step(behind->set, behind->at, end, ends, behind->out, why)) {
-            if (behind->at == from) break;  // an empty run; cannot happen with tokens left
-            if (behind->at == at) break;
-            continue;
-        }
-        const Part whole = std::move(*behind);
-        parts.erase(behind);
-        const std::vector<Set> sets = pp_.split(why, whole.set);
-        for (const Set set : sets) parts.push_back({set, from, whole.out});
-        count_states(sets.size(), sets.front());
+        const auto behind =
+            std::stable_partition(parts.begin(), parts.end(), [&](const Part& p) { return p.at == nullptr || p.at == furthest; });
+        std::move(behind, parts.end(), std::back_inserter(todo));
+        parts.erase(behind, parts.end());
     }
     if (over_limit_) return end;
     if (parts.size() == 1 && parts.front().at != nullptr) {

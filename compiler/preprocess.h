@@ -78,7 +78,7 @@ private:
     std::vector<Frame> frames_;
     std::vector<Emitted::Sequence> sequences_;  // the innermost last
     std::vector<uint16_t> stack_;               // files being read
-    std::vector<Set> read_once_, read_;         // by file: variants that saw #pragma once; that read it at all
+    std::vector<Set> read_once_;                // by file: variants that saw #pragma once
     const Item* version_ = nullptr;             // of the root file
 };
 

@@ -15,8 +15,8 @@ namespace kiln {
 namespace {
 
 struct Version {
-    int number = 100;
-    bool es = true;
+    int number = 110;  // what glslang takes a shader without #version for
+    bool es = false;
     bool compatibility = false;
     std::string line;  // as written, or empty
     TextPlace place;
@@ -25,6 +25,7 @@ struct Version {
 // #version decides what is predefined, so it is looked for before anything is read.
 Version find_version(const LexedFile& file, const Spellings& spellings, uint16_t index, Findings& findings, Set start) {
     Version out;
+    out.place = {index, 1, 1};
     bool first = true;
     for (const Item& item : file.items) {
         if (item.kind != Directive::version) {
@@ -138,6 +139,12 @@ Split split_stage(const Manifest& manifest, const Shader& shader, const StageFil
                                          " different texts or preprocessor states" +
                                          (axes.empty() ? std::string() : "; the axes that split most: " + axes));
         groups.clear();
+    }
+    if (diagram.exhausted()) {
+        const std::string axes = busiest_axes(space, excess, start);
+        out.diags.error(stage.place, "the conditions in " + stage.file + " make sets of variants too large to hold" +
+                                         (axes.empty() ? std::string() : "; the axes that split most: " + axes));
+        return out;
     }
     for (size_t i = 0; i < sources.count(); ++i) out.files.push_back(sources.file(static_cast<uint16_t>(i)).name);
     out.reads = sources.reads();

@@ -86,7 +86,7 @@ Answer preprocess(kiln::Stage stage, const std::map<std::string, std::string>& f
     shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_3);
     Includer includer(files);
     const auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
-    answer.ok = shader.preprocess(GetDefaultResources(), 100, ENoProfile, false, false, messages, &answer.text, includer);
+    answer.ok = shader.preprocess(GetDefaultResources(), 110, ENoProfile, false, false, messages, &answer.text, includer);
     answer.log = shader.getInfoLog();
     return answer;
 }

@@ -35,6 +35,8 @@ TEST(Predefined, LikeGlslang) {
     size_t asked = 0;
     for (const Case& c : cases)
         for (const Stage stage : all_stages()) {
+            // glslang prints all its built-ins where a version has not the stage.
+            if (c.version == 140 && stage != Stage::vertex && stage != Stage::fragment) continue;
             std::string text = std::string("#version ") + c.line + "\n";
             for (const std::string& name : names) text += "#ifdef " + name + "\nhas(x" + name + "x = " + name + ");\n#endif\n";
             const oracle::Answer answer = oracle::preprocess(stage, {{"main", text}}, "main", "");
