@@ -62,10 +62,10 @@ Diagram::Body::Body(std::vector<uint32_t> radices_, std::vector<uint32_t> order_
     cache_.assign(first_cache, {});
 }
 
-void Diagram::Body::Marks::start(size_t nodes) {
-    if (stamp.size() < nodes) {
-        stamp.resize(nodes, 0);
-        value.resize(nodes, 0);
+void Diagram::Body::Marks::start(size_t size) {
+    if (stamp.size() < size) {
+        stamp.resize(size, 0);
+        value.resize(size, 0);
     }
     if (++now == 0) {
         std::fill(stamp.begin(), stamp.end(), 0);

@@ -30,7 +30,7 @@ struct Diagram::Body {
     struct Marks {
         std::vector<uint32_t> stamp, value;
         uint32_t now = 0;
-        void start(size_t nodes);
+        void start(size_t size);
         bool has(NodeId n) const { return stamp[n] == now; }
         uint32_t get(NodeId n) const { return value[n]; }
         void set(NodeId n, uint32_t v) {

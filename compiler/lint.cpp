@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <tuple>
 
 #include "compiler/expr_set.h"
@@ -77,29 +78,56 @@ private:
         return it->second;
     }
 
+    // Rules that share no axis, directly or through others, say nothing about each other: each connected part is looked at alone.
+    static std::vector<std::vector<uint32_t>> connected(const Space& space, const std::vector<uint32_t>& rules) {
+        std::vector<uint32_t> parent(space.axes.size());
+        std::iota(parent.begin(), parent.end(), 0u);
+        const auto root = [&](uint32_t axis) {
+            while (parent[axis] != axis) axis = parent[axis] = parent[parent[axis]];
+            return axis;
+        };
+        for (const uint32_t r : rules)
+            for (const uint32_t axis : space.rules[r].expr.axes) parent[root(axis)] = root(space.rules[r].expr.axes[0]);
+        std::map<uint32_t, std::vector<uint32_t>> parts;
+        for (const uint32_t r : rules) parts[root(space.rules[r].expr.axes[0])].push_back(r);
+        std::vector<std::vector<uint32_t>> found;
+        for (auto& [axis, part] : parts) found.push_back(std::move(part));
+        return found;
+    }
+
     void note_rules(const Space& space, Diagram& scratch, const std::vector<Set>& allowed) {
-        // Deepest first, as implied_by_others() likes it; rules that exclude nothing are kept out of the others' way.
-        std::vector<uint32_t> order;
+        std::vector<uint32_t> telling;  // rules that exclude something
         for (uint32_t r = 0; r < allowed.size(); ++r) {
             RuleFacts& facts = facts_of(space.rules[r]);
             ++facts.copies;
             if (allowed[r] == Diagram::all() && !scratch.exhausted())
                 ++facts.empty;
-            else
-                order.push_back(r);
+            else if (!space.rules[r].expr.axes.empty())
+                telling.push_back(r);
         }
+        // Deepest first, as implied_by_others() likes it.
         const auto top = [&](uint32_t r) {
             return allowed[r].node <= 1 ? 0 : scratch.level_of_axis(scratch.axis_of(allowed[r]));
         };
-        if (!scratch.exhausted())
-            std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return top(a) > top(b); });
+        std::stable_sort(telling.begin(), telling.end(), [&](uint32_t a, uint32_t b) { return top(a) > top(b); });
         const size_t live = space.diagram->reachable({&space.legal, 1}).size();
-        std::vector<Set> sets;
-        for (const uint32_t r : order) sets.push_back(allowed[r]);
+        constexpr size_t small_part = 16;  // rules that never need a walk over what other rules leave
+        std::vector<uint32_t> order;
         std::vector<bool> implied;
-        const bool looked = !scratch.exhausted() && order.size() * live <= most_work;
-        if (looked) implied = implied_by_others(scratch, sets);
-        if (!looked || scratch.exhausted()) {
+        bool looked = !scratch.exhausted();
+        for (const std::vector<uint32_t>& part : connected(space, telling)) {
+            if (!looked || (part.size() > small_part && part.size() * live > most_work)) {
+                looked = false;
+                break;
+            }
+            std::vector<Set> sets;
+            for (const uint32_t r : part) sets.push_back(allowed[r]);
+            const std::vector<bool> answers = implied_by_others(scratch, sets);
+            looked = !scratch.exhausted();
+            order.insert(order.end(), part.begin(), part.end());
+            implied.insert(implied.end(), answers.begin(), answers.end());
+        }
+        if (!looked) {
             unlooked(space);
             return;
         }

@@ -33,8 +33,10 @@ std::unique_ptr<Space> build_space(const Manifest& manifest, const Shader& shade
 Set compile_expr(Space& space, const Expr& expr);
 
 // Warnings with places: a value that no shader can ever have, a rule that excludes nothing or is implied by all the others
-// (in every shader that has it); an error when the rules leave nothing, naming a smallest set of rules that clash. Work is
-// bounded: past 2 million nodes a shader's rules are not looked at for implied ones, and a note says so.
+// (in every shader that has it); an error when the rules leave nothing, naming a smallest set of rules that clash. Null
+// spaces are passed over. Work is bounded: where more than 16 rules hang together by their axes and their number times the
+// nodes of the legal set passes 50 million, or where the search itself passes 2 million nodes, implied rules of that shader
+// are not looked for and a note says so.
 void lint(const Manifest& manifest, std::vector<std::unique_ptr<Space>>& spaces, Diags& diags);
 
 }  // namespace kiln

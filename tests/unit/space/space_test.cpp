@@ -125,6 +125,19 @@ TEST(Space, SetOperationsAgreeWithBruteForce) {
     }
 }
 
+TEST(Space, NoAxes) {
+    Case c({});
+    const auto space = c.build();
+    ASSERT_TRUE(space);
+    EXPECT_EQ(space->declared(), Count(1));
+    EXPECT_EQ(space->diagram->count(space->legal), Count(1));
+    EXPECT_EQ(space->diagram->witness(space->legal), Digits());
+    EXPECT_EQ(space->diagram->unrank(space->legal, Count(0)), Digits());
+    EXPECT_EQ(space->diagram->rank(space->legal, {}), Count(0));
+    EXPECT_EQ(members(*space, space->legal), std::vector<Digits>{Digits()});
+    EXPECT_EQ(space->describe_variant({}), "");
+}
+
 TEST(Space, ChainOfSixtyFlags) {
     std::vector<Axis> axes;
     for (int i = 0; i < 60; ++i) axes.push_back(boolean_axis("f" + std::to_string(i)));
