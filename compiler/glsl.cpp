@@ -289,9 +289,10 @@ void match_faces(const StageFace& vertex, const StageFace& fragment, std::vector
         if (input.builtin) continue;
         const Global* output = nullptr;
         if (const auto same = vertex.outputs.find(name); same != vertex.outputs.end()) output = &same->second;
-        if (input.location >= 0) {
+        const int location = input.location;
+        if (location >= 0) {
             const auto there = std::find_if(vertex.outputs.begin(), vertex.outputs.end(),
-                                            [&](const auto& o) { return o.second.location == input.location; });
+                                            [location](const auto& o) { return o.second.location == location; });
             if (there != vertex.outputs.end()) output = &there->second;
         }
         if (output == nullptr) {

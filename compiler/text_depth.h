@@ -8,7 +8,7 @@
 
 namespace kiln {
 
-inline constexpr uint32_t max_operators = 4000;   // nested in one expression
+inline constexpr uint32_t max_operators = 2000;   // nested in one expression
 inline constexpr uint32_t max_structures = 2000;  // in one text
 
 // An error at the line where an expression becomes deeper than `max_operators`, or where the text declares one structure too
