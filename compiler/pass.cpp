@@ -315,6 +315,7 @@ void pass_table(Build& build, const BuildOptions& options, PassContext& context)
     input.manifest = &manifest;
     input.tool_versions = context.tools.versions();
     input.targets = manifest.targets;
+    for (const Scene& scene : build.scenes) input.scenes.push_back(scene.name);
     input.stages = build.stages;
     input.modules = &build.modules;
     input.artifacts = &build.artifacts;

@@ -70,8 +70,10 @@ Answer answer_of(Build& build, Space& space, const Selection& selection) {
     }
     if (needed == Diagram::none()) {
         answer.status = "not needed";
-        for (const Scene& scene : build.scenes)
-            answer.because.push_back({"scene", {scene.path, 0, 0}, "not needed by " + scene.name});
+        for (const Scene& scene : build.scenes) {
+            SceneReason reason = explain_scene(scene, space, legal);
+            answer.because.push_back({"scene", std::move(reason.place), std::move(reason.text)});
+        }
         return answer;
     }
     answer.status = needed == wanted ? "needed" : "partly";

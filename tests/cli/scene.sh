@@ -19,7 +19,7 @@ kiln build p/m.yaml -o a.kiln --scene hall.yaml --report-json r.json >/dev/null
 expect_json r.json 'd["counts"]["needed"]' 2
 expect_json r.json 'd["counts"]["classes"]' 2
 expect_code 0 kiln explain a.kiln tint=blue bright=true
-expect_out "not needed"
+expect_out "not needed by hall"
 expect_code 0 kiln explain a.kiln tint=none bright=true
 expect_out forbidden
 sed -i 's/tint: red/tint: none, bright: true/' hall.yaml
