@@ -44,8 +44,8 @@ public:
     Translation(spvc_context context, spvc_compiler compiler, Target target, const ir::View& view)
         : context_(context), compiler_(compiler), target_(target), language_(language_of(target)), view_(view) {}
 
-    Translated run(const Edits& edits, bool corrects_depth) {
-        if (!set_options(corrects_depth) || !combine(edits)) return last_error();
+    Translated run(const Edits& edits, bool corrects_depth, bool flat_blocks) {
+        if (!set_options(corrects_depth, flat_blocks) || !combine(edits)) return last_error();
         for (const char* extension : edits.extensions)
             if (!ok(spvc_compiler_require_extension(compiler_, extension))) return last_error();
         apply(edits);
@@ -60,7 +60,7 @@ private:
     Translated last_error() const { return refused(spvc_context_get_last_error_string(context_)); }
     bool is_gl() const { return language_ == Language::glsl || language_ == Language::essl; }
 
-    bool set_options(bool corrects_depth) {
+    bool set_options(bool corrects_depth, bool flat_blocks) {
         spvc_compiler_options o = nullptr;
         if (!ok(spvc_compiler_create_compiler_options(compiler_, &o))) return false;
         bool good = true;
@@ -80,7 +80,7 @@ private:
             flag(SPVC_COMPILER_OPTION_FIXUP_DEPTH_CONVENTION, corrects_depth);
             // Draw calls with a base instance came with GL 4.2; before, the term would be a uniform that nobody sets.
             flag(SPVC_COMPILER_OPTION_GLSL_SUPPORT_NONZERO_BASE_INSTANCE, target_ == Target::glsl450);
-            flag(SPVC_COMPILER_OPTION_GLSL_FORCE_FLATTENED_IO_BLOCKS, target_ != Target::glsl450);
+            flag(SPVC_COMPILER_OPTION_GLSL_FORCE_FLATTENED_IO_BLOCKS, flat_blocks);
             // Uniforms of both stages must agree in precision, and the vertex stage's is high.
             flag(SPVC_COMPILER_OPTION_GLSL_ES_DEFAULT_FLOAT_PRECISION_HIGHP, true);
             flag(SPVC_COMPILER_OPTION_GLSL_ES_DEFAULT_INT_PRECISION_HIGHP, true);
@@ -126,6 +126,10 @@ private:
             for (const auto mode : {SpvExecutionModeDepthGreater, SpvExecutionModeDepthLess, SpvExecutionModeDepthUnchanged})
                 spvc_compiler_unset_execution_mode(compiler_, mode);
         for (const Edits::Interpolate& i : edits.interpolate) interpolate(i);
+        for (const uint32_t id : edits.unplaced) spvc_compiler_unset_decoration(compiler_, id, SpvDecorationLocation);
+        if (!edits.unplaced.empty())
+            for (const Edits::MemberName& m : edits.member_names)
+                spvc_compiler_unset_member_decoration(compiler_, m.type, m.member, SpvDecorationLocation);
         for (const auto& [id, number] : edits.bindings) {
             spvc_compiler_unset_decoration(compiler_, id, SpvDecorationDescriptorSet);
             spvc_compiler_set_decoration(compiler_, id, SpvDecorationBinding, number);
@@ -245,7 +249,8 @@ std::vector<Translated> cross_translate(WordView words, const std::vector<Target
                 SPVC_SUCCESS)
             out[i] = refused(spvc_context_get_last_error_string(raw));
         else
-            out[i] = Translation(raw, compiler, targets[i], *view).run(edits[i], slots.rasterised == reflected->reflection.stage);
+            out[i] = Translation(raw, compiler, targets[i], *view)
+                         .run(edits[i], slots.rasterised == reflected->reflection.stage, slots.flat_blocks);
         spvc_context_release_allocations(raw);
     }
     return out;

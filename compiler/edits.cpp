@@ -1,7 +1,7 @@
 // Names. SPIRV-Cross falls back to ids (`_45`) where a name is missing or taken, and ids differ from variant to variant, so
 // every resource gets a name that depends on its slot alone. GLSL 330 and ESSL 300 link varyings by name where Vulkan does by
 // location: there a varying at location 3 is called io_loc3 on both sides, whatever its name was. A block's members are
-// flattened by SPIRV-Cross to <type name>_<member name> in those targets, hence the type is called io and its member loc3.
+// flattened by SPIRV-Cross to <variable>_<member>, hence the variable is called io and its member loc3.
 
 #include "compiler/edits.h"
 
@@ -147,7 +147,7 @@ uint32_t locations_of(const ir::View& view, uint32_t type) {
     }
 }
 
-void rename_varying(const ir::View& view, const ir::Variable& variable, Edits& out) {
+void rename_varying(const ir::View& view, const ir::Variable& variable, bool flattened, Edits& out) {
     const ir::Decorations& marks = view.marks(variable.id);
     const uint32_t bare = bare_type(view, variable.type);
     const ir::Type& t = view.type(bare);
@@ -155,14 +155,13 @@ void rename_varying(const ir::View& view, const ir::Variable& variable, Edits& o
         out.names.emplace_back(variable.id, "io_" + by_location(or_zero(marks.location), or_zero(marks.component)));
         return;
     }
-    const bool block = view.marks(bare).block;
     uint32_t location = or_zero(marks.location);
-    out.names.emplace_back(variable.id, "io_" + by_location(location, 0));
-    out.names.emplace_back(bare, block ? "io" : "io_type_" + by_location(location, 0));
+    out.names.emplace_back(variable.id, flattened ? "io" : "io_" + by_location(location, 0));
+    out.names.emplace_back(bare, "io_type_" + by_location(location, 0));
     for (uint32_t m = 0; m < t.members.size(); ++m) {
         const ir::Decorations& member = view.member_marks(bare, m);
         if (member.location != ir::none) location = member.location;
-        out.member_names.push_back({bare, m, block ? by_location(location, or_zero(member.component)) : "m" + std::to_string(m)});
+        out.member_names.push_back({bare, m, by_location(location, or_zero(member.component))});
         location += locations_of(view, t.members[m]);
     }
 }
@@ -200,7 +199,8 @@ void plan_varyings(const ir::View& view, const Reflection& reflection, Target ta
         if (!is_linked(reflection, v.storage) || view.marks(v.id).builtin != ir::none) continue;
         const uint32_t bare = bare_type(view, v.type);
         if (view.type(bare).kind == ir::Kind::structure && view.member_marks(bare, 0).builtin != ir::none) continue;
-        if (links_by_name(target)) rename_varying(view, v, out);
+        if (links_by_name(target) || layout.flat_blocks) rename_varying(view, v, layout.flat_blocks, out);
+        if (layout.flat_blocks && !links_by_name(target)) out.unplaced.push_back(v.id);
         if (v.storage == ir::sc_output && reflection.stage == layout.rasterised) plan_interpolation(view, v, layout, out);
     }
 }

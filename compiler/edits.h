@@ -33,7 +33,8 @@ struct Edits {
         Interpolation how;
     };
     std::vector<Interpolate> interpolate;
-    std::vector<Slot> slots;  // of this module's resources, for HLSL and MSL
+    std::vector<Slot> slots;         // of this module's resources, for HLSL and MSL
+    std::vector<uint32_t> unplaced;  // variables that lose their location
     std::vector<std::pair<uint32_t, Slot>> by_variable;
     std::vector<const char*> extensions;  // to be asked for
     bool separate = false;                // has images or samplers that are not combined

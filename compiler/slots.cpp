@@ -121,6 +121,17 @@ std::vector<Interpolation> agreed_interpolation(const std::vector<const Reflecti
     return out;
 }
 
+// Reflection names members "Block.member".
+bool hands_over_blocks(const std::vector<const Reflection*>& modules) {
+    const auto is_member = [](const Varying& v) { return v.name.find('.') != std::string::npos; };
+    for (const Reflection* m : modules) {
+        const auto& list = m->stage == Stage::fragment ? m->inputs : m->outputs;
+        if ((m->stage == Stage::fragment || m->stage == Stage::vertex) && std::any_of(list.begin(), list.end(), is_member))
+            return true;
+    }
+    return false;
+}
+
 }  // namespace
 
 SlotLayout assign_slots(const std::vector<const Reflection*>& modules) {
@@ -140,6 +151,7 @@ SlotLayout assign_slots(const std::vector<const Reflection*>& modules) {
         for (const Stage stage : {Stage::tess_evaluation, Stage::geometry, Stage::mesh})
             if (m->stage == stage) out.rasterised = std::max(out.rasterised, stage);
     out.interpolation = agreed_interpolation(modules);
+    out.flat_blocks = out.rasterised == Stage::vertex && hands_over_blocks(modules);
     std::set<std::string> names;
     for (const auto& [key, entry] : all) {
         Slot s;

@@ -59,7 +59,10 @@ struct Interpolation {
 struct SlotLayout {
     std::vector<Slot> slots;                   // by set, binding, kind; push constants last with set = binding = ~0u
     std::vector<Interpolation> interpolation;  // by location, where all fragment modules that read it agree
-    Stage rasterised = Stage::vertex;          // the shader's last stage before the rasteriser: in GL it converts depth
+    // Some stage hands over a block or a structure. SPIRV-Cross flattens those for GL, which loses their locations, so all
+    // varyings of the shader go by name then, in every GL target.
+    bool flat_blocks = false;
+    Stage rasterised = Stage::vertex;  // the shader's last stage before the rasteriser: in GL it converts depth
     friend bool operator==(const SlotLayout&, const SlotLayout&) = default;
 };
 

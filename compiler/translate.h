@@ -9,8 +9,9 @@
 //   - Numbers are the slots'. GLSL 450 and ESSL 310 carry them as bindings; GLSL 330 and ESSL 300 have no bindings, there the
 //     application sets them by name after linking. HLSL uses register space 0 alone.
 //   - GLSL 330 and ESSL 300 link varyings by name, so one at location 3 is `io_loc3` on both sides (`io_loc3c2` from component
-//     2 on). In GLSL and ESSL the writer takes over the reader's interpolation. Vertex inputs, fragment outputs and all other
-//     targets keep names and locations (HLSL: TEXCOORD<location>).
+//     2 on). So do GLSL 450 and ESSL 310 where a shader hands over blocks or structures (SlotLayout::flat_blocks). In GLSL and
+//     ESSL the writer takes over the reader's interpolation. Vertex inputs, fragment outputs and all other targets keep
+//     names and locations (HLSL: TEXCOORD<location>).
 //   - Clip space: GLSL and ESSL vertex texts end with the change from Vulkan's depth 0..w to -w..w. No target flips y: where
 //     y points up in clip space (Metal, Direct3D) the application mirrors its projection or viewport, and in GL, where rows of
 //     memory agree with Vulkan's, winding is the other way round.

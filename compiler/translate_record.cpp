@@ -20,6 +20,7 @@ Digest read_digest(WireReader& in) {
 Bytes write_slots(const SlotLayout& layout) {
     WireWriter out;
     out.u8(static_cast<uint8_t>(layout.rasterised));
+    out.u8(layout.flat_blocks);
     out.u64(layout.interpolation.size());
     for (const Interpolation& i : layout.interpolation) {
         out.u32(i.location);
