@@ -126,13 +126,11 @@ private:
             for (const auto mode : {SpvExecutionModeDepthGreater, SpvExecutionModeDepthLess, SpvExecutionModeDepthUnchanged})
                 spvc_compiler_unset_execution_mode(compiler_, mode);
         for (const Edits::Interpolate& i : edits.interpolate) interpolate(i);
-        for (const uint32_t id : edits.unplaced) spvc_compiler_unset_decoration(compiler_, id, SpvDecorationLocation);
-        if (!edits.unplaced.empty())
+        for (const auto decoration : {SpvDecorationLocation, SpvDecorationComponent}) {
+            if (edits.unplaced.empty()) break;
+            for (const uint32_t id : edits.unplaced) spvc_compiler_unset_decoration(compiler_, id, decoration);
             for (const Edits::MemberName& m : edits.member_names)
-                spvc_compiler_unset_member_decoration(compiler_, m.type, m.member, SpvDecorationLocation);
-        for (const auto& [id, number] : edits.bindings) {
-            spvc_compiler_unset_decoration(compiler_, id, SpvDecorationDescriptorSet);
-            spvc_compiler_set_decoration(compiler_, id, SpvDecorationBinding, number);
+                spvc_compiler_unset_member_decoration(compiler_, m.type, m.member, decoration);
         }
     }
 
