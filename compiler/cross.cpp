@@ -132,6 +132,10 @@ private:
             for (const Edits::MemberName& m : edits.member_names)
                 spvc_compiler_unset_member_decoration(compiler_, m.type, m.member, decoration);
         }
+        for (const auto& [id, number] : edits.bindings) {
+            spvc_compiler_unset_decoration(compiler_, id, SpvDecorationDescriptorSet);
+            spvc_compiler_set_decoration(compiler_, id, SpvDecorationBinding, number);
+        }
     }
 
     void interpolate(const Edits::Interpolate& i) {
