@@ -143,6 +143,7 @@ private:
     void axes(kf_shader_record& r, const Space& space, const KeyLayout& layout) {
         std::vector<kf_axis_record> records;
         std::vector<kf_check_record> checks;
+        for (const uint64_t mask : layout.masks) checks.push_back({mask, 0, 0});
         for (uint32_t i = 0; i < space.axes.size(); ++i) {
             const Axis& axis = space.axes[i];
             std::vector<kf_value_record> values;
@@ -150,11 +151,14 @@ private:
             const uint32_t field = layout.fields[i].packed(), radix = static_cast<uint32_t>(axis.values.size());
             records.push_back({out_.text(axis.name), out_.text(axis.macro), out_.list(kf_values, values),
                                static_cast<uint32_t>(axis.kind), field});
-            if (uint64_t{1} << layout.fields[i].bits != radix) checks.push_back({field, radix, i, 0});
+            const KeyField& f = layout.fields[i];
+            if (const uint64_t lacks = (uint64_t{1} << f.bits) - radix; lacks != 0) {
+                checks[f.word].addend |= lacks << f.shift;
+                if (f.shift + f.bits < 64) checks[f.word].carry |= uint64_t{1} << (f.shift + f.bits);
+            }
         }
         r.axes = out_.append(kf_axes, records);
         r.checks = out_.append(kf_checks, checks);
-        r.masks = out_.append(kf_wides, layout.masks);
     }
 
     // Axes that no test or expansion read go first, then whatever else the modules turn out not to depend on.

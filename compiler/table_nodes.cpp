@@ -19,7 +19,7 @@ namespace {
 
 constexpr uint32_t root_bits = 14;     // index of an array that replaces a whole map
 constexpr uint32_t inner_bits = 8;     // of one that replaces a node's sub-map
-constexpr uint32_t window_bits = 4;    // of a node that takes in the levels below it
+constexpr uint32_t window_bits = 6;    // of a node that takes in the levels below it
 constexpr uint64_t free_bytes = 1024;  // an array up to this size is taken even when the diagram is smaller
 constexpr uint64_t growth = 4;         // else it may be this much larger than the diagram
 

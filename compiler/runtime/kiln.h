@@ -94,8 +94,8 @@ typedef struct kiln_shader { /* a handle: fetch it once, look up with it often. 
     uint32_t stage[KILN_MAX_STAGES]; /* kiln_stage, ascending */
     struct {
         uint32_t axes, stages, slots, pipelines, rules, target_count;
-        const uint8_t *masks, *checks, *modules, *artifacts, *used;
-        uint32_t check_count, check_stride, used_words;
+        const uint8_t *checks, *modules, *artifacts, *used;
+        uint32_t check_stride, used_words;
         kiln_diagram status, stage[KILN_MAX_STAGES];
     } private_;
 } kiln_shader;

@@ -144,19 +144,16 @@ kiln_status kiln_get_shader(const kiln_table* table, uint32_t index, kiln_shader
         !kiln_fits(table, kf_rules, r.rules.first, r.rules.count) || !kiln_fits(table, kf_slots, r.slots.first, r.slots.count) ||
         !kiln_fits(table, kf_pipelines, r.pipelines.first, r.pipelines.count) ||
         !kiln_fits(table, kf_checks, r.checks.first, r.checks.count) || r.stages.count > KILN_MAX_STAGES ||
-        r.masks.count > 0x10000u)
+        r.checks.count > 0x10000u)
         return KILN_DAMAGED;
     shader->private_.used_words = (uint32_t)(((uint64_t)r.slots.count + 63) / 64);
-    shader->private_.masks = kiln_run(table, kf_wides, r.masks.first, r.masks.count);
     shader->private_.modules = kiln_run(table, kf_numbers, r.modules.first, r.modules.count);
     shader->private_.artifacts = kiln_run(table, kf_numbers, r.artifacts, (uint64_t)info.targets.count * r.modules.count);
     shader->private_.used = kiln_run(table, kf_wides, r.used, (uint64_t)r.modules.count * shader->private_.used_words);
     shader->private_.checks = kiln_run(table, kf_checks, r.checks.first, r.checks.count);
-    shader->private_.check_count = r.checks.count;
     shader->private_.check_stride = table->section[kf_checks].stride;
-    if (shader->private_.masks == NULL || shader->private_.modules == NULL || shader->private_.artifacts == NULL ||
-        shader->private_.used == NULL || shader->private_.checks == NULL ||
-        !kiln_diagram_at(table, r.status, &shader->private_.status))
+    if (shader->private_.modules == NULL || shader->private_.artifacts == NULL || shader->private_.used == NULL ||
+        shader->private_.checks == NULL || !kiln_diagram_at(table, r.status, &shader->private_.status))
         return KILN_DAMAGED;
     for (uint32_t i = 0; i < r.stages.count; ++i) {
         kf_stage_record stage;
@@ -176,7 +173,7 @@ kiln_status kiln_get_shader(const kiln_table* table, uint32_t index, kiln_shader
     shader->module_count = r.modules.count;
     shader->pipeline_count = r.pipelines.count;
     shader->rule_count = r.rules.count;
-    shader->key_words = r.masks.count;
+    shader->key_words = r.checks.count;
     shader->private_.axes = r.axes.first;
     shader->private_.stages = r.stages.first;
     shader->private_.slots = r.slots.first;
@@ -198,12 +195,13 @@ kiln_status kiln_find_shader(const kiln_table* table, const char* name, kiln_sha
     return KILN_ABSENT;
 }
 
+/* A digit that its axis lacks carries out of its field when the missing values are added, and no valid one does: so no carry
+ * means that all digits are valid, and the lowest bad digit shows whatever the others are. */
 static int key_valid(const kiln_shader* s, const uint64_t* key) {
-    for (uint32_t i = 0; i < s->key_words; ++i)
-        if (key[i] & ~kiln_u64(s->private_.masks + (size_t)8 * i)) return 0;
-    for (uint32_t i = 0; i < s->private_.check_count; ++i) {
+    for (uint32_t i = 0; i < s->key_words; ++i) {
         const uint8_t* check = s->private_.checks + (size_t)i * s->private_.check_stride;
-        if (kiln_digit(key, s->key_words, kiln_u32(check)) >= kiln_u32(check + 4)) return 0;
+        const uint64_t addend = kiln_u64(check + 8), sum = key[i] + addend;
+        if ((key[i] & ~kiln_u64(check)) | ((sum ^ key[i] ^ addend) & kiln_u64(check + 16)) | (sum < key[i])) return 0;
     }
     return 1;
 }

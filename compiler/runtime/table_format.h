@@ -116,8 +116,7 @@ typedef struct kf_shader_record {
     kf_range axes, stages, rules, slots, pipelines;
     kf_range modules; /* numbers: modules that this shader uses, ascending */
     kf_range order;   /* numbers: the axes in the order in which diagrams test them */
-    kf_range masks;   /* wides: the bits that a key may have set, one word each; count = words of a key */
-    kf_range checks;  /* the axes that do not fill their bits */
+    kf_range checks;  /* one a word of a key, at least one */
     uint32_t status;  /* diagram: kf_leaf_* */
     uint32_t zero;
     uint32_t artifacts; /* numbers, first of [target][module of the list above]: artifact, KF_NO_ARTIFACT or KF_HOLE */
@@ -151,8 +150,10 @@ typedef struct kf_diagram_record {
     uint32_t root, leaves; /* every leaf is below `leaves` */
 } kf_diagram_record;
 
-typedef struct kf_check_record {
-    uint32_t field, radix, axis, zero;
+typedef struct kf_check_record { /* is a word w of a key made of digits that exist */
+    uint64_t mask;               /* the bits that some axis owns: w & ~mask is 0 */
+    uint64_t addend; /* in each field what its radix lacks to the next power of two: w + addend carries out of no field */
+    uint64_t carry;  /* the bits above the fields with such an addend, where carries would show; bit 64 by overflow */
 } kf_check_record;
 
 typedef struct kf_slot_record {

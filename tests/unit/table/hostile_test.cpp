@@ -87,7 +87,7 @@ TEST(Hostile, ForgedBytesNeverLeaveTheTable) {
         return random ^= random << 17;
     };
     size_t opened = 0, verified = 0;
-    for (int round = 0; round < 20000; ++round) {
+    for (int round = 0; round < 8000; ++round) {
         Bytes bytes = whole;
         for (uint64_t edits = 1 + next() % 3; edits > 0; --edits) {
             const size_t at = 32 + 40 * kf_section_last + next() % (bytes.size() - 32 - 40 * kf_section_last);
@@ -103,7 +103,7 @@ TEST(Hostile, ForgedBytesNeverLeaveTheTable) {
         opened += out.opened == KILN_OK;
         verified += out.opened == KILN_OK && out.verified == KILN_OK;
     }
-    EXPECT_EQ(opened, 20000u);
+    EXPECT_EQ(opened, 8000u);
     EXPECT_GT(verified, 0u);  // a changed name or word of SPIR-V is not a broken structure
     EXPECT_LT(verified, opened);
 }

@@ -65,6 +65,18 @@ size_t expect_agrees(Sample& sample, const Bytes& bytes, const std::string& note
     EXPECT_EQ(kiln_get_shader(&table, 0, &shader), KILN_OK);
     Space& space = sample.space(0);
     std::vector<uint64_t> key(shader.key_words);
+    // Every pattern of the key's bits, and one bit more: a bad key is told from a good one.
+    uint32_t bits = 0;
+    for (uint32_t a = 0; a < shader.axis_count; ++a) {
+        kiln_axis axis;
+        EXPECT_EQ(kiln_get_axis(&shader, a, &axis), KILN_OK);
+        bits += axis.bits;
+    }
+    std::vector<uint32_t> digits(shader.axis_count);
+    for (uint64_t raw = 0; raw<uint64_t{2} << bits; raw += bits> 12 ? 7 : 1) {
+        const bool good = kiln_unpack(&shader, &raw, digits.data()) == KILN_OK && raw >> bits == 0;
+        EXPECT_EQ(kiln_check(&shader, &raw) != KILN_BAD_KEY, good) << raw << note;
+    }
     every(space.diagram->radices(), [&](const Digits& d) {
         EXPECT_EQ(kiln_pack(&shader, d.data(), key.data()), KILN_OK);
         uint32_t modules[KILN_MAX_STAGES];
