@@ -181,7 +181,7 @@ Bytes fill_block(const Resource& block, uint64_t seed, bool either_sign) {
 std::vector<BaseType> word_types(const Resource& block) {
     std::vector<BaseType> out(block_bytes(block) / 4, BaseType::uint32);
     for (const Member& m : block.members) {
-        if (m.type.base != BaseType::float32) continue;
+        if (m.type.base != BaseType::float32 || m.type.rows > 4 || m.type.columns > 4) continue;
         const size_t stride = m.type.columns > 1 ? matrix_stride_of(m) : 0;
         for (const size_t at : element_offsets(m))
             for (unsigned c = 0; c < m.type.columns; ++c)

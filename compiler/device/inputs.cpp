@@ -196,7 +196,7 @@ Inputs make_inputs(const std::vector<StageCode>& stages, const InputOptions& opt
             for (unsigned i = 0; i < 3; ++i) {
                 const uint32_t local = std::max(1u, s.reflection.workgroup[i]);
                 const uint32_t wanted = i == 0 || local > 1 ? (i == 2 ? 4u : dispatched_side) : 1u;
-                out.groups[i] = (wanted + local - 1) / local;
+                out.groups[i] = (wanted - 1) / local + 1;
             }
     }
     for (const auto& [slot, resource] : resources) out.bindings.push_back(make_binding(*resource, options));
