@@ -1,6 +1,12 @@
 #pragma once
 // The splitting preprocessor (DESIGN section 3): preprocesses one stage once with every axis macro open, and returns the
 // classes: the distinct token streams and exactly which variants have each.
+//
+// The rules are those of glslang 12 for Vulkan GLSL, with these departures. Refused here: an identifier that nothing defines
+// in an evaluated operand of a live #if (unless the options say zero); conditionals that do not balance within one file; an
+// identifier joined by ## to an operator; bytes outside ASCII outside comments. Accepted here: #include without an extension
+// line; #pragma once; a directive that the file ends in without a newline; a byte order mark. Left to the compiler: whether
+// an extension, a version or a literal's suffix is supported.
 
 #include <cstdint>
 #include <string>
