@@ -304,6 +304,7 @@ void pass_table(Build& build, const BuildOptions& options, PassContext& context)
         build.diags.append(build.artifacts.diags);
         build.work.translated += build.artifacts.translated;
         build.work.cache_hits += build.artifacts.cache_hits;
+        build.work.store_failures += build.artifacts.store_failures;
         for (const Target target : manifest.targets) build.counts.artifacts[target] = 0;
         for (const Artifacts::Text& text : build.artifacts.list) ++build.counts.artifacts[text.target];
         if (build.counts.artifacts.count(Target::spirv) != 0) build.counts.artifacts[Target::spirv] = build.counts.modules;
@@ -317,6 +318,8 @@ void pass_table(Build& build, const BuildOptions& options, PassContext& context)
     input.targets = manifest.targets;
     for (const Scene& scene : build.scenes) input.scenes.push_back(scene.name);
     input.stages = build.stages;
+    for (const auto& space : build.spaces)
+        if (space->needed == Diagram::none()) input.left_out.push_back(space.get());
     input.modules = &build.modules;
     input.artifacts = &build.artifacts;
     input.interfaces = &build.interfaces;

@@ -17,7 +17,7 @@ Status close_block(PackedTexts& out, Bytes& plain) {
     block.unpacked = static_cast<uint32_t>(plain.size());
     Bytes packed(static_cast<size_t>(LZ4_compressBound(static_cast<int>(plain.size()))));
     const int size = LZ4_compress_HC(reinterpret_cast<const char*>(plain.data()), reinterpret_cast<char*>(packed.data()),
-                                     static_cast<int>(plain.size()), static_cast<int>(packed.size()), LZ4HC_CLEVEL_MAX);
+                                     static_cast<int>(plain.size()), static_cast<int>(packed.size()), LZ4HC_CLEVEL_DEFAULT);
     if (size <= 0) return environment_error("a text could not be compressed");
     packed.resize(static_cast<size_t>(size));
     block.codec = packed.size() < plain.size() ? kf_codec_lz4 : kf_codec_raw;

@@ -54,6 +54,16 @@ class Kiln:
         text = subprocess.run([self.binary, "count", str(manifest), "--list", str(most)], check=True, stdout=subprocess.PIPE).stdout.decode()
         return [line.split() for line in text.splitlines() if "=" in line]
 
+    def first_of_each_module(self, table, listed, most=2000):
+        """(variant, stage) pairs: for every module of the table that up to `most` listed variants reach, the first that does."""
+        first = {}
+        for words in listed[:: max(1, len(listed) // most)]:
+            text = subprocess.run([self.binary, "dump", table, "--json", "--shader", *words], check=True, stdout=subprocess.PIPE).stdout
+            for stage in json.loads(text)["stages"]:
+                for module in stage["modules"]:
+                    first.setdefault(module["module"], (words, stage["stage"]))
+        return list(first.values())
+
 
 def macros(manifest, shader, words):
     """-D arguments of one listed variant: axis names and value names through the manifest."""
@@ -80,15 +90,17 @@ def macros(manifest, shader, words):
     return out
 
 
-def stage_runs(path, listed):
-    """(stage, file, include arguments, macros) of every stage of every listed variant."""
+def stage_runs(path, pairs):
+    """(stage, file, include arguments, macros) of (variant, stage) pairs; stage None: every stage of the variant."""
     manifest = yaml.safe_load(path.read_text())
     folder = path.parent
     includes = [f"-I{folder}"] + [f"-I{folder / i}" for i in manifest.get("include", [])]
     runs = []
-    for words in listed:
+    for words, only in pairs:
         shader = next(s for s in manifest["shaders"] if s["name"] == words[0])
         for stage, file in shader["stages"].items():
+            if only not in (None, stage):
+                continue
             found = next(p for p in [folder / file] + [folder / i / file for i in manifest.get("include", [])] if p.exists())
             runs.append((stage, found, includes, macros(manifest, shader, words[1:])))
     return runs
@@ -127,17 +139,20 @@ def peer_qsb(runs, folder):
 def bench_manifest(kiln, path, quick, folder):
     out = {}
     table = f"{folder}/t.kiln"
-    init = 0.0
     cold, cold_wall, report = best(3, lambda: kiln.build(path, table, "none", 1))
     _, two_wall, _ = min((kiln.build(path, table, "none", 2) for _ in range(3)), key=lambda r: r[1])
     counts = report["counts"]
-    modules, legal = int(counts["modules"]), int(counts["needed"])
+    modules = int(counts["modules"])
     listed = kiln.variants(path, 100000)
-    runs = stage_runs(path, listed)
-    step = max(1, len(runs) // (24 if quick else 120))
-    sample = runs[::step]
+    # The same population on both sides: one compile of each module for the ratio a module, of each variant's stages for the other.
+    modules_runs = stage_runs(path, kiln.first_of_each_module(table, listed))
+    runs = stage_runs(path, [(words, None) for words in listed])
+    most = 24 if quick else 120
+    sample = modules_runs[:: max(1, len(modules_runs) // most)]
     today = peers_today(sample, folder)
     per_run = sum(today.values()) / len(sample)
+    variant_sample = runs[:: max(1, len(runs) // most)]
+    per_variant_run = sum(peers_today(variant_sample, folder).values()) / len(variant_sample)
     qsb = peer_qsb(sample, folder)
     unique = cold / modules
     out["counts"] = counts
@@ -149,11 +164,10 @@ def bench_manifest(kiln, path, quick, folder):
     out["today_split_ms"] = {k: 1000 * v / len(sample) for k, v in today.items()}
     out["stage_compiles_measured"] = len(sample)
     out["ratio_a_unique_module"] = per_run / unique
-    out["ratio_a_legal_variant"] = per_run * len(runs) / cold
+    out["ratio_a_legal_variant"] = per_variant_run * len(runs) / cold
     if qsb is not None:
         out["qsb_ms_a_stage_compile"] = 1000 * qsb / len(sample)
         out["qsb_ratio_a_unique_module"] = qsb / len(sample) / unique
-        out["qsb_ratio_a_legal_variant"] = qsb / len(sample) * len(runs) / cold
     out["one_job_wall_s"], out["two_jobs_wall_s"] = cold_wall, two_wall
     # glslang builds its symbol tables once, on one thread; the rest is what jobs share.
     tiny = f"{folder}/tiny.yaml"
