@@ -2,7 +2,7 @@
 // K2 names. A damaged record reads as absent, so a memo can cost time but never give a wrong result.
 #include "compiler/memo.h"
 
-#include "compiler/set_wire.h"
+#include "compiler/space/set_wire.h"
 
 namespace kiln {
 

@@ -1,6 +1,6 @@
 #pragma once
 // What a build remembers of its inputs, in two steps as ccache's direct mode: what was asked (K1) names the list of files that
-// were read and probed last time; if all of that still holds, asked + list (K2) names the result (DESIGN section 5).
+// were read and probed last time; if all of that still holds, asked + list (K2) names the result (ARCHITECTURE.md, Cache).
 
 #include <optional>
 #include <vector>
@@ -8,7 +8,7 @@
 #include "compiler/base/files.h"
 #include "compiler/base/store.h"
 #include "compiler/base/wire.h"
-#include "compiler/split.h"
+#include "compiler/split/split.h"
 
 namespace kiln {
 

@@ -4,10 +4,10 @@
 #include <chrono>
 #include <set>
 
-#include "compiler/blame.h"
-#include "compiler/describe.h"
 #include "compiler/memo.h"
-#include "compiler/set_wire.h"
+#include "compiler/modules/blame.h"
+#include "compiler/space/describe.h"
+#include "compiler/space/set_wire.h"
 
 namespace kiln {
 

@@ -1,5 +1,5 @@
 #pragma once
-// The pass: from a manifest to a table, one stage after another (DESIGN section 4). Each step takes what the steps before it
+// The pass: from a manifest to a table, one stage after another (ARCHITECTURE.md). Each step takes what the steps before it
 // made and adds to a Build; a step that found errors ends the pass, with everything of that step reported.
 
 #include <map>
@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "compiler/base/files.h"
-#include "compiler/interfaces.h"
-#include "compiler/scene.h"
-#include "compiler/table.h"
+#include "compiler/interfaces/interfaces.h"
+#include "compiler/space/scene.h"
+#include "compiler/table/table.h"
 
 namespace kiln {
 

@@ -5,7 +5,7 @@
 
 #include "compiler/base/diag.h"
 #include "compiler/base/result.h"
-#include "compiler/modules.h"
+#include "compiler/modules/modules.h"
 
 namespace kiln {
 

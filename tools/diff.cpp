@@ -1,5 +1,5 @@
 // kiln diff: two tables compared by names; exact counts, nothing enumerated.
-#include "compiler/table_diff.h"
+#include "compiler/table/table_diff.h"
 #include "tools/console.h"
 #include "tools/json.h"
 #include "tools/session.h"

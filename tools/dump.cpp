@@ -1,6 +1,6 @@
 // kiln dump: what is in a table, what a variant resolves to, or the texts themselves.
-#include "compiler/spirv.h"
-#include "compiler/table_dump.h"
+#include "compiler/table/table_dump.h"
+#include "compiler/toolchain/spirv.h"
 #include "tools/console.h"
 #include "tools/json.h"
 #include "tools/select.h"

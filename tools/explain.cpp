@@ -1,6 +1,6 @@
 // kiln explain: why a variant is or is not there, which text it compiles and who shares it. On a manifest it asks the space and
 // the classes; on a table it asks the table (tools/explain_table.cpp).
-#include "compiler/describe.h"
+#include "compiler/space/describe.h"
 #include "tools/console.h"
 #include "tools/explain_table.h"
 #include "tools/json.h"

@@ -1,6 +1,6 @@
 #include "tools/explain_table.h"
 
-#include "compiler/describe.h"
+#include "compiler/space/describe.h"
 #include "tools/console.h"
 #include "tools/json.h"
 #include "tools/select.h"

@@ -10,31 +10,33 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
-# Our own stages that stand below the pass and above their library wrappers are one layer; the pass, the device and the
-# command line follow.
-PASS = {"pass", "memo"}
-VALIDATION = {"validate", "validate_tasks", "workers", "device", "check", "check_wire", "published"}
+# The folders of compiler/ in the order of the data: each may include itself and what stands before it. Files directly in
+# compiler/ are the pass.
+ORDER = ["base", "runtime", "manifest", "space", "split", "reflect", "toolchain", "modules", "translate", "interfaces", "table", "pass",
+         "validate", "device"]
 
 # Third-party header prefix -> the files that may include it.
 THIRD_PARTY = {
     "xxhash": {"compiler/base/xxh3.cpp"},
     "openssl/": {"compiler/base/sha256.cpp"},
-    "gmp": {"compiler/count.cpp"},
-    "yaml-cpp/": {"compiler/yaml.cpp"},
-    "glslang/": {"compiler/glsl.cpp"},
-    "spirv-tools/": {"compiler/spirv.cpp"},
-    "spirv_cross/": {"compiler/cross.cpp"},
-    "lz4": {"compiler/table_text.cpp"},
+    "gmp": {"compiler/space/count.cpp"},
+    "yaml-cpp/": {"compiler/manifest/yaml.cpp"},
+    "glslang/": {"compiler/toolchain/glsl.cpp"},
+    "spirv-tools/": {"compiler/toolchain/spirv.cpp"},
+    "spirv_cross/": {"compiler/toolchain/cross.cpp"},
+    "lz4": {"compiler/table/table_text.cpp"},
     "png": {"compiler/device/png.cpp"},
-    "mimalloc": {"tools/allocator.cpp"},
 }
-C_LIBRARY = {"fcntl.h", "unistd.h", "poll.h", "signal.h", "dirent.h", "dlfcn.h", "sched.h", "time.h", "termios.h", "glob.h", "stdint.h",
-             "stddef.h", "string.h", "stdbool.h", "pthread.h", "spawn.h", "limits.h", "errno.h", "utime.h"}
+
+def folder_of(path):
+    """Index into ORDER of a file of compiler/."""
+    parts = path.parts
+    return ORDER.index(parts[1]) if len(parts) > 2 else ORDER.index("pass")
 
 
 def layer_of(path):
+    """0 base and runtime, 1 cache, 2 stages, 3 pass, 4 validation and device, 5 command line, 6 tests and benchmarks."""
     parts = path.parts
-    stem = pathlib.Path(parts[-1]).stem
     if parts[0] == "tests" or parts[:2] == ("tools", "bench"):
         return 6
     if parts[0] == "tools":
@@ -43,13 +45,8 @@ def layer_of(path):
         return 1
     if parts[0] != "compiler":
         return None
-    if parts[1] in ("base", "runtime"):
-        return 0
-    if parts[1] == "device" or stem in VALIDATION:
-        return 4
-    if stem in PASS:
-        return 3
-    return 2
+    index = folder_of(path)
+    return 0 if index < ORDER.index("manifest") else 2 if index < ORDER.index("pass") else 3 if index == ORDER.index("pass") else 4
 
 
 def check(path, breaches):
@@ -70,7 +67,9 @@ def check(path, breaches):
             below = layer_of(target)
             if layer is None or below is None:
                 continue
-            if below > layer:
+            if relative.parts[0] == target.parts[0] == "compiler" and folder_of(target) > folder_of(relative):
+                breaches.append(f"{where}: {ORDER[folder_of(relative)]} includes {header}, which comes later")
+            elif below > layer:
                 breaches.append(f"{where}: layer {layer} includes {header} of layer {below}")
             if relative.parts[0] == "cache" and target.parts[0] == "compiler" and target.parts[1] != "base":
                 breaches.append(f"{where}: cache/ may use compiler/base only, not {header}")

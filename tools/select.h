@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/space.h"
+#include "compiler/space/space.h"
 
 namespace kiln {
 

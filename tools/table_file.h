@@ -2,7 +2,7 @@
 // A table named on the command line, opened and verified; errors name the file.
 
 #include "compiler/base/files.h"
-#include "compiler/table_read.h"
+#include "compiler/table/table_read.h"
 
 namespace kiln {
 

@@ -1,5 +1,5 @@
 // kiln validate: every pipeline of a table on a device, one worker process a core (the hidden verb validate-worker).
-#include "compiler/validate.h"
+#include "compiler/validate/validate.h"
 
 #include <unistd.h>
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/device.h"
+#include "compiler/validate/device.h"
 
 namespace kiln {
 

@@ -4,7 +4,7 @@
 
 #include <vulkan/vulkan.h>
 
-#include "compiler/device.h"
+#include "compiler/validate/device.h"
 
 namespace kiln {
 

@@ -12,7 +12,7 @@
 #include "compiler/device/png.h"
 #include "compiler/device/sheet_pick.h"
 #include "compiler/device/sheet_scene.h"
-#include "compiler/validate_tasks.h"
+#include "compiler/validate/validate_tasks.h"
 
 namespace kiln {
 

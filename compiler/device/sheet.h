@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "compiler/device.h"
-#include "compiler/toolchain.h"
+#include "compiler/toolchain/toolchain.h"
+#include "compiler/validate/device.h"
 
 namespace kiln {
 

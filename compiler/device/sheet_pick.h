@@ -1,7 +1,7 @@
 #pragma once
 // Which pipelines a contact sheet shows.
 
-#include "compiler/table_read.h"
+#include "compiler/table/table_read.h"
 
 namespace kiln {
 

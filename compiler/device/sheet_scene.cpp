@@ -10,9 +10,9 @@
 #include <map>
 #include <optional>
 
-#include "compiler/device/blocks.h"
-#include "compiler/device/inputs.h"
 #include "compiler/device/sheet_math.h"
+#include "compiler/validate/blocks.h"
+#include "compiler/validate/inputs.h"
 
 namespace kiln {
 

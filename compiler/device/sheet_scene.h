@@ -2,7 +2,7 @@
 // The scene of a contact sheet: a sphere of radius 1 on a plane, a camera, one light, textures and shadow maps, worked out
 // here and fitted to a shader's reflection by name. World space is right-handed with y up, in metres; clip space is Vulkan's.
 
-#include "compiler/device.h"
+#include "compiler/validate/device.h"
 
 namespace kiln {
 

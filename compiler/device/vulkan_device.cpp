@@ -10,7 +10,7 @@
 
 #include "compiler/base/digest.h"
 #include "compiler/device/bind.h"
-#include "compiler/spirv.h"
+#include "compiler/toolchain/spirv.h"
 
 namespace kiln {
 

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "compiler/device.h"
 #include "compiler/device/driver.h"
+#include "compiler/validate/device.h"
 
 namespace kiln {
 

@@ -1,8 +1,8 @@
 #ifndef KILN_TABLE_FORMAT_H
 #define KILN_TABLE_FORMAT_H
 /*
- * The bytes of a variant table (.kiln), version 1. Shared by the writer (compiler/table.cpp) and the reader beside this file.
- * Little-endian. Every offset is from the start of its section, every section starts at a multiple of 8 bytes.
+ * The bytes of a variant table (.kiln), version 1. Shared by the writer (compiler/table/table.cpp) and the reader beside this
+ * file. Little-endian. Every offset is from the start of its section, every section starts at a multiple of 8 bytes.
  *
  *   table   := header entry{sections} section{sections}
  *   header  := magic[8] u32 version u32 sections u64 file_bytes u64 checksum        32 bytes

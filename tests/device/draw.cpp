@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "compiler/device/partner.h"
+#include "compiler/validate/partner.h"
 #include "tests/device/glsl.h"
 
 namespace kiln::test {

@@ -3,17 +3,17 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/check.h"
-#include "compiler/cross.h"
-#include "compiler/device/inputs.h"
-#include "compiler/glsl.h"
+#include "compiler/toolchain/cross.h"
+#include "compiler/toolchain/glsl.h"
+#include "compiler/validate/check.h"
+#include "compiler/validate/inputs.h"
 
 namespace kiln::test {
 
 inline StageCode stage_of(Words words) {
     StageCode out;
     out.words = std::move(words);
-    Result<Reflection> r = cross_reflect(out.words);
+    Result<Reflection> r = reflect_words(out.words);
     EXPECT_TRUE(r.ok()) << (r.ok() ? "" : r.error().message);
     if (r.ok()) out.reflection = std::move(*r);
     out.stage = out.reflection.stage;

@@ -1,6 +1,6 @@
 // Real workers with the real driver: what crashes or hangs takes only itself along.
 
-#include "compiler/workers.h"
+#include "compiler/validate/workers.h"
 #include "tests/device/glsl.h"
 
 namespace kiln::test {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "compiler/spirv.h"
-#include "compiler/workers.h"
+#include "compiler/toolchain/spirv.h"
+#include "compiler/validate/workers.h"
 #include "tests/device/glsl.h"
 
 namespace kiln::test {

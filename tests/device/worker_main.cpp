@@ -1,7 +1,7 @@
 // The worker process of these tests.
 
 #include "compiler/device/vulkan_device.h"
-#include "compiler/workers.h"
+#include "compiler/validate/workers.h"
 
 int main() {
     return kiln::run_worker([] { return kiln::open_vulkan_device({}); });

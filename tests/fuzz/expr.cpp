@@ -1,7 +1,7 @@
 // Any bytes as a rule expression: a tree that can be evaluated, children before parents, or an error inside the text.
 #include <cstdlib>
 
-#include "compiler/expr.h"
+#include "compiler/manifest/expr.h"
 
 namespace {
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "compiler/manifest.h"
-#include "compiler/scene.h"
+#include "compiler/manifest/manifest.h"
+#include "compiler/space/scene.h"
 
 namespace {
 

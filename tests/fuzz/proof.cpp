@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "compiler/proof.h"
+#include "compiler/table/proof.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     constexpr size_t head = 12, digest = 32;

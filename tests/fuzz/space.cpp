@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "compiler/describe.h"
+#include "compiler/space/describe.h"
 
 namespace {
 

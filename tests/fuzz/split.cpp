@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "compiler/split.h"
+#include "compiler/split/split.h"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "compiler/runtime/table_format.h"
-#include "compiler/table_read.h"
+#include "compiler/table/table_read.h"
 #include "tests/unit/table/exercise.h"
 
 namespace {

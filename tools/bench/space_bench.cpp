@@ -2,8 +2,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "compiler/describe.h"
-#include "compiler/space.h"
+#include "compiler/space/describe.h"
+#include "compiler/space/space.h"
 
 namespace kiln {
 namespace {

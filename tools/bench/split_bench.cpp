@@ -2,7 +2,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "compiler/split.h"
+#include "compiler/split/split.h"
 
 namespace kiln {
 namespace {

@@ -13,7 +13,7 @@
 #include <sstream>
 #include <string>
 
-#include "compiler/toolchain.h"
+#include "compiler/toolchain/toolchain.h"
 
 namespace kiln {
 

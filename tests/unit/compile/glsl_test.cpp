@@ -1,10 +1,10 @@
-#include "compiler/glsl.h"
+#include "compiler/toolchain/glsl.h"
 
 #include <gtest/gtest.h>
 
 #include <thread>
 
-#include "compiler/spirv.h"
+#include "compiler/toolchain/spirv.h"
 #include "tests/unit/compile/tokens.h"
 
 namespace kiln {

@@ -1,4 +1,4 @@
-#include "compiler/messages.h"
+#include "compiler/toolchain/messages.h"
 
 #include <gtest/gtest.h>
 

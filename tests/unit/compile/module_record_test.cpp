@@ -1,4 +1,4 @@
-#include "compiler/module_record.h"
+#include "compiler/modules/module_record.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "compiler/modules.h"
+#include "compiler/modules/modules.h"
 
 #include <gtest/gtest.h>
 

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "compiler/blame.h"
-#include "compiler/glsl.h"
-#include "compiler/modules.h"
-#include "compiler/spirv.h"
+#include "compiler/modules/blame.h"
+#include "compiler/modules/modules.h"
+#include "compiler/toolchain/glsl.h"
+#include "compiler/toolchain/spirv.h"
 #include "tests/unit/compile/world.h"
 
 namespace kiln {

@@ -1,9 +1,9 @@
-#include "compiler/spirv.h"
+#include "compiler/toolchain/spirv.h"
 
 #include <gtest/gtest.h>
 
-#include "compiler/glsl.h"
-#include "compiler/spirv_names.h"
+#include "compiler/toolchain/glsl.h"
+#include "compiler/toolchain/spirv_names.h"
 
 namespace kiln {
 namespace {

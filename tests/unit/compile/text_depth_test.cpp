@@ -1,8 +1,8 @@
-#include "compiler/text_depth.h"
+#include "compiler/toolchain/text_depth.h"
 
 #include <gtest/gtest.h>
 
-#include "compiler/glsl.h"
+#include "compiler/toolchain/glsl.h"
 
 namespace kiln {
 namespace {

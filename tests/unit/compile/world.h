@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/modules.h"
+#include "compiler/modules/modules.h"
 
 namespace kiln {
 

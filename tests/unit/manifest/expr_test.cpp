@@ -1,4 +1,4 @@
-#include "compiler/expr.h"
+#include "compiler/manifest/expr.h"
 
 #include <gtest/gtest.h>
 
@@ -208,7 +208,7 @@ TEST(Expr, NamesPastTheIndexThreshold) {
     }
 }
 
-// The oracle: a tree is made at random, written down with as few parentheses as the grammar of DESIGN section 6 needs
+// The oracle: a tree is made at random, written down with as few parentheses as the grammar of ARCHITECTURE.md, Manifests and scenes needs
 // (sometimes more), and evaluated by walking it. The parser sees only the text.
 struct Tree {
     enum Kind { axis, integer, implies, either, both, negate, compare, member } kind = axis;

@@ -1,7 +1,7 @@
 // Every way to write a manifest wrongly, with the place and the words of the answer.
 #include <gtest/gtest.h>
 
-#include "compiler/manifest.h"
+#include "compiler/manifest/manifest.h"
 
 namespace kiln {
 namespace {

@@ -1,4 +1,4 @@
-#include "compiler/manifest.h"
+#include "compiler/manifest/manifest.h"
 
 #include <gtest/gtest.h>
 

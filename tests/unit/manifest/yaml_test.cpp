@@ -1,4 +1,4 @@
-#include "compiler/yaml.h"
+#include "compiler/manifest/yaml.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "compiler/set_wire.h"
+#include "compiler/space/set_wire.h"
 
 #include <gtest/gtest.h>
 

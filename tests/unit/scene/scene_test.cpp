@@ -1,4 +1,4 @@
-#include "compiler/scene.h"
+#include "compiler/space/scene.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 #include <cstdio>
 #include <string>
 
-#include "compiler/manifest.h"
-#include "compiler/scene.h"
+#include "compiler/manifest/manifest.h"
+#include "compiler/space/scene.h"
 
 int main(int argc, char** argv) {
     if (argc != 2) return 2;

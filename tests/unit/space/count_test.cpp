@@ -1,4 +1,4 @@
-#include "compiler/count.h"
+#include "compiler/space/count.h"
 
 #include <gtest/gtest.h>
 

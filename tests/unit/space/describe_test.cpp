@@ -1,4 +1,4 @@
-#include "compiler/describe.h"
+#include "compiler/space/describe.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "compiler/base/diag.h"
-#include "compiler/describe.h"
+#include "compiler/space/describe.h"
 #include "tests/unit/space/random_space.h"
 
 namespace kiln {

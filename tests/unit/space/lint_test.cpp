@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "compiler/base/diag.h"
-#include "compiler/implied.h"
+#include "compiler/space/implied.h"
 #include "tests/unit/space/random_space.h"
 
 namespace kiln {

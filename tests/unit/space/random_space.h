@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "compiler/expr.h"
-#include "compiler/manifest.h"
-#include "compiler/space.h"
+#include "compiler/manifest/expr.h"
+#include "compiler/manifest/manifest.h"
+#include "compiler/space/space.h"
 
 namespace kiln::test {
 

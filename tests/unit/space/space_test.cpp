@@ -1,7 +1,7 @@
 // The diagram against brute force: every answer about thousands of random small spaces equals the one found by asking
 // evaluate() about every combination.
 
-#include "compiler/space.h"
+#include "compiler/space/space.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "compiler/lex.h"
+#include "compiler/split/lex.h"
 #include "oracle.h"
 
 using namespace kiln;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/split.h"
+#include "compiler/split/split.h"
 
 struct TestAxis {
     std::string macro;

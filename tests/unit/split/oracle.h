@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/stage.h"
+#include "compiler/manifest/stage.h"
 
 namespace oracle {
 

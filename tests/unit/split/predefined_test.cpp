@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "compiler/predefined.h"
+#include "compiler/split/predefined.h"
 #include "fixture.h"
 #include "oracle.h"
 

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "compiler/proof.h"
-#include "compiler/table_read.h"
+#include "compiler/table/proof.h"
+#include "compiler/table/table_read.h"
 #include "sample.h"
 
 namespace kiln::test {

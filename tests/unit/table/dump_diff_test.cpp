@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "compiler/table_diff.h"
-#include "compiler/table_dump.h"
+#include "compiler/table/table_diff.h"
+#include "compiler/table/table_dump.h"
 #include "sample.h"
 
 namespace kiln::test {

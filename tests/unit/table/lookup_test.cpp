@@ -1,8 +1,8 @@
 // The reader against what was written, on every combination of axes, legal or not.
 #include <gtest/gtest.h>
 
-#include "compiler/proof.h"
 #include "compiler/runtime/kiln.h"
+#include "compiler/table/proof.h"
 #include "sample.h"
 
 namespace kiln::test {

@@ -5,10 +5,10 @@
 #include <chrono>
 #include <random>
 
-#include "compiler/proof.h"
 #include "compiler/runtime/kiln.h"
 #include "compiler/runtime/table_format.h"
-#include "compiler/table_read.h"
+#include "compiler/table/proof.h"
+#include "compiler/table/table_read.h"
 #include "sample.h"
 
 namespace kiln::test {

@@ -6,7 +6,7 @@
 
 #include "compiler/runtime/kiln.hpp"
 #include "compiler/runtime/table_format.h"
-#include "compiler/table_text.h"
+#include "compiler/table/table_text.h"
 #include "sample.h"
 
 namespace kiln::test {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "compiler/expr.h"
+#include "compiler/manifest/expr.h"
 
 namespace kiln::test {
 

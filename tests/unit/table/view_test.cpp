@@ -1,8 +1,8 @@
 // Our own view of a table, and the proof against it.
 #include <gtest/gtest.h>
 
-#include "compiler/proof.h"
-#include "compiler/table_read.h"
+#include "compiler/table/proof.h"
+#include "compiler/table/table_read.h"
 #include "sample.h"
 
 namespace kiln::test {

@@ -1,7 +1,7 @@
 #pragma once
 // Shaders for one language feature each, for the tests of what a target can say. Without their #version line.
 
-#include "compiler/stage.h"
+#include "compiler/manifest/stage.h"
 
 namespace kiln {
 

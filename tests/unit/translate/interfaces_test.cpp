@@ -1,10 +1,10 @@
-#include "compiler/interfaces.h"
+#include "compiler/interfaces/interfaces.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "compiler/mismatch.h"
+#include "compiler/interfaces/mismatch.h"
 #include "tests/unit/translate/mini_build.h"
 
 namespace kiln {

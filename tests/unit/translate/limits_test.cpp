@@ -1,11 +1,11 @@
 // The second opinion is glslang as an OpenGL front end: whatever is not refused must parse. Texts of HLSL and Metal have no
 // such judge here; what is known about them stands in the list below.
 
-#include "compiler/limits.h"
+#include "compiler/toolchain/limits.h"
 
 #include <gtest/gtest.h>
 
-#include "compiler/translate.h"
+#include "compiler/translate/translate.h"
 #include "tests/unit/translate/feature_shaders.h"
 #include "tests/unit/translate/mini_build.h"
 
@@ -23,7 +23,7 @@ std::vector<Target> text_targets() {
 Words words_of(const FeatureShader& shader) { return spirv_of(shader.stage, shader.text); }
 
 std::vector<Translated> translate(const Words& words, const std::vector<Target>& targets) {
-    const Result<Reflection> r = cross_reflect(words);
+    const Result<Reflection> r = reflect_words(words);
     if (!r.ok()) return {};
     return cross_translate(words, targets, assign_slots({&*r}));
 }

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "compiler/cross.h"
-#include "compiler/glsl.h"
-#include "compiler/modules.h"
-#include "compiler/spirv.h"
+#include "compiler/modules/modules.h"
+#include "compiler/toolchain/cross.h"
+#include "compiler/toolchain/glsl.h"
+#include "compiler/toolchain/spirv.h"
 
 namespace kiln {
 
@@ -28,7 +28,7 @@ inline Words spirv_of(Stage stage, const std::string& text, const Options& optio
 }
 
 inline Reflection reflection_of(Stage stage, const std::string& text) {
-    const Result<Reflection> r = cross_reflect(spirv_of(stage, text));
+    const Result<Reflection> r = reflect_words(spirv_of(stage, text));
     EXPECT_TRUE(r.ok()) << text;
     return r.ok() ? *r : Reflection();
 }
@@ -93,7 +93,7 @@ private:
         Module m;
         m.stage = stage;
         m.digest = sha256(as_bytes(WordView(words)));
-        const Result<Reflection> r = cross_reflect(words);
+        const Result<Reflection> r = reflect_words(words);
         EXPECT_TRUE(r.ok());
         if (r.ok()) m.reflection = *r;
         m.words = std::move(words);

@@ -171,7 +171,7 @@ layout(std140, set=0, binding=2) uniform U { float k[3]; vec4 scale; };
 void main() { into[gl_GlobalInvocationID.x] = from[count]; sums[1] += k[2] * scale.x; v = from[0].at; })"}};
     for (const auto& [stage, text] : shaders) {
         const Words words = spirv_of(stage, text);
-        const Result<Reflection> ours = cross_reflect(words);
+        const Result<Reflection> ours = reflect_words(words);
         ASSERT_TRUE(ours.ok());
         const std::string json = run_tool(words);
         ASSERT_FALSE(json.empty());

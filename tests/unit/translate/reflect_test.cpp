@@ -194,13 +194,13 @@ void main() { for (int i = 0; i < 3; ++i) { b = a[i]; gl_Position = gl_in[i].gl_
 
 TEST(Reflect, RefusesWhatCannotBeWalked) {
     const Words good = spirv_of(Stage::fragment, "layout(location=0) out vec4 o; void main() { o = vec4(1); }");
-    ASSERT_TRUE(cross_reflect(good).ok());
+    ASSERT_TRUE(reflect_words(good).ok());
     for (size_t n = 0; n < good.size(); ++n) {
         const Words cut(good.begin(), good.begin() + static_cast<ptrdiff_t>(n));
-        (void)cross_reflect(cut);  // an error or not: some prefixes are whole instructions; never a crash
+        (void)reflect_words(cut);  // an error or not: some prefixes are whole instructions; never a crash
     }
-    EXPECT_FALSE(cross_reflect({}).ok());
-    EXPECT_FALSE(cross_reflect(Words{0x07230203, 0x10000, 0, 0, 0}).ok());
+    EXPECT_FALSE(reflect_words({}).ok());
+    EXPECT_FALSE(reflect_words(Words{0x07230203, 0x10000, 0, 0, 0}).ok());
     Words two_entries = good;
     for (size_t at = 5; at < good.size(); at += good[at] >> 16)
         if ((good[at] & 0xffff) == 15) {
@@ -208,19 +208,19 @@ TEST(Reflect, RefusesWhatCannotBeWalked) {
                                good.begin() + static_cast<ptrdiff_t>(at + (good[at] >> 16)));
             break;
         }
-    EXPECT_FALSE(cross_reflect(two_entries).ok());
+    EXPECT_FALSE(reflect_words(two_entries).ok());
     for (size_t i = 5; i < good.size(); ++i)
         for (const uint32_t flip : {1U, 0x80000000U, 0x10000U, 0xffffffffU}) {
             Words bad = good;
             bad[i] ^= flip;
-            (void)cross_reflect(bad);
+            (void)reflect_words(bad);
         }
 }
 
 TEST(Reflect, TypesThatContainThemselvesAreRefused) {
     // struct %2 { %3 }, struct %3 { %2 }
     const Words cycle = {0x07230203, 0x10000, 0, 8, 0, 4U << 16 | 15, 4, 1, 0x006e, 3U << 16 | 30, 2, 3, 3U << 16 | 30, 3, 2};
-    EXPECT_FALSE(cross_reflect(cycle).ok());
+    EXPECT_FALSE(reflect_words(cycle).ok());
 }
 
 }  // namespace

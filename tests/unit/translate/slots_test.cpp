@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "compiler/translate.h"
+#include "compiler/translate/translate.h"
 #include "tests/unit/translate/mini_build.h"
 
 namespace kiln {

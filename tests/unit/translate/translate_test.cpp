@@ -1,10 +1,10 @@
-#include "compiler/translate.h"
+#include "compiler/translate/translate.h"
 
 #include <gtest/gtest.h>
 
 #include <atomic>
 
-#include "compiler/pipelines.h"
+#include "compiler/modules/pipelines.h"
 #include "tests/unit/translate/mini_build.h"
 
 namespace kiln {
@@ -20,7 +20,7 @@ public:
     Result<Words> prune(WordView, const Options&) override { return input_error("not here"); }
     Result<Words> optimise(WordView, const Options&) override { return input_error("not here"); }
     std::vector<ToolMessage> validate(WordView, const Options&) override { return {}; }
-    Result<Reflection> reflect(WordView words) override { return cross_reflect(words); }
+    Result<Reflection> reflect(WordView words) override { return reflect_words(words); }
     std::vector<Translated> translate(WordView words, const std::vector<Target>& targets, const SlotLayout& slots) override {
         ++translates;
         std::vector<Translated> out = cross_translate(words, targets, slots);

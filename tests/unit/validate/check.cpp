@@ -1,4 +1,4 @@
-#include "compiler/check.h"
+#include "compiler/validate/check.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "compiler/check_wire.h"
+#include "compiler/validate/check_wire.h"
 #include "tests/unit/validate/fake_device.h"
 
 namespace kiln {

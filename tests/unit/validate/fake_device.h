@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "compiler/device.h"
+#include "compiler/validate/device.h"
 
 namespace kiln::test {
 

@@ -1,4 +1,4 @@
-#include "compiler/device/inputs.h"
+#include "compiler/validate/inputs.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cstring>
 #include <set>
 
-#include "compiler/device/blocks.h"
+#include "compiler/validate/blocks.h"
 
 namespace kiln {
 namespace {

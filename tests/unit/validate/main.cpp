@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "compiler/workers.h"
+#include "compiler/validate/workers.h"
 #include "tests/unit/validate/fake_device.h"
 
 using namespace kiln;

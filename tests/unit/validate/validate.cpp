@@ -1,6 +1,6 @@
 // The whole policy over a real table, with a fake device.
 
-#include "compiler/validate.h"
+#include "compiler/validate/validate.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <set>
 
 #include "compiler/pass.h"
-#include "compiler/validate_tasks.h"
+#include "compiler/validate/validate_tasks.h"
 #include "tests/unit/validate/fake_device.h"
 
 namespace kiln {

@@ -1,4 +1,4 @@
-#include "compiler/workers.h"
+#include "compiler/validate/workers.h"
 
 #include <gtest/gtest.h>
 

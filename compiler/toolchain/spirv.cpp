@@ -1,0 +1,153 @@
+// Pruning comes before optimising because it is cheap and already merges nearly everything that will merge: variants differ
+// mostly in functions that one of them never calls. Names go first, so that they cannot keep two equal modules apart.
+//
+// The list for `performance` is that of spirv-opt -O without the repetitions that change nothing on a pruned module: on the 150
+// classes of uber/surface both leave 144 modules, of 1,739 and 1,734 words on average, at four fifths of the time.
+
+#include "compiler/toolchain/spirv.h"
+
+#include <exception>
+#include <spirv-tools/libspirv.hpp>
+#include <spirv-tools/optimizer.hpp>
+
+#include "compiler/toolchain/spirv_names.h"
+
+namespace kiln {
+namespace {
+
+spv_target_env environment_of(const Options& options) {
+    switch (options.vulkan) {
+        case 0x100:
+            return SPV_ENV_VULKAN_1_0;
+        case 0x102:
+            return SPV_ENV_VULKAN_1_2;
+        case 0x103:
+            return SPV_ENV_VULKAN_1_3;
+        default:
+            return options.spirv >= 0x104 ? SPV_ENV_VULKAN_1_1_SPIRV_1_4 : SPV_ENV_VULKAN_1_1;
+    }
+}
+
+Severity severity_of(spv_message_level_t level) {
+    switch (level) {
+        case SPV_MSG_FATAL:
+        case SPV_MSG_INTERNAL_ERROR:
+        case SPV_MSG_ERROR:
+            return Severity::error;
+        case SPV_MSG_WARNING:
+            return Severity::warning;
+        default:
+            return Severity::note;
+    }
+}
+
+template <class Register>
+Result<Words> run(const char* what, WordView words, const Options& options, const Register& register_passes) {
+    try {
+        spvtools::Optimizer optimizer(environment_of(options));
+        std::string said;
+        optimizer.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
+            if (severity_of(level) == Severity::error && said.empty()) said = text;
+        });
+        register_passes(optimizer);
+        spvtools::OptimizerOptions how;
+        how.set_run_validator(false);
+        Words out;
+        if (optimizer.Run(words.data(), words.size(), &out, how)) return out;
+        return environment_error(std::string("SPIRV-Tools failed to ") + what + " a module: " + said);
+    } catch (const std::exception& problem) {
+        return environment_error(std::string("SPIRV-Tools failed to ") + what + " a module: " + problem.what());
+    }
+}
+
+void register_lean(spvtools::Optimizer& o) {
+    using namespace spvtools;
+    o.RegisterPass(CreateWrapOpKillPass())
+        .RegisterPass(CreateMergeReturnPass())
+        .RegisterPass(CreateInlineExhaustivePass())
+        .RegisterPass(CreateEliminateDeadFunctionsPass())
+        .RegisterPass(CreatePrivateToLocalPass())
+        .RegisterPass(CreateScalarReplacementPass())
+        .RegisterPass(CreateLocalAccessChainConvertPass())
+        .RegisterPass(CreateLocalSingleStoreElimPass())
+        .RegisterPass(CreateAggressiveDCEPass())
+        .RegisterPass(CreateSSARewritePass())
+        .RegisterPass(CreateCCPPass())
+        .RegisterPass(CreateLoopUnrollPass(true))
+        .RegisterPass(CreateDeadBranchElimPass())
+        .RegisterPass(CreateSimplificationPass())
+        .RegisterPass(CreateVectorDCEPass())
+        .RegisterPass(CreateDeadInsertElimPass())
+        .RegisterPass(CreateCopyPropagateArraysPass())
+        .RegisterPass(CreateBlockMergePass())
+        .RegisterPass(CreateRedundancyEliminationPass())
+        .RegisterPass(CreateAggressiveDCEPass())
+        .RegisterPass(CreateCompactIdsPass());
+}
+
+}  // namespace
+
+std::string spirv_version() { return spvSoftwareVersionDetailsString(); }
+
+Result<Words> spirv_prune(WordView words, const Options& options) {
+    const auto passes = [](spvtools::Optimizer& o) {
+        using namespace spvtools;
+        o.RegisterPass(CreateEliminateDeadFunctionsPass())
+            .RegisterPass(CreateDeadBranchElimPass())
+            .RegisterPass(CreateAggressiveDCEPass())
+            .RegisterPass(CreateBlockMergePass())
+            .RegisterPass(CreateEliminateDeadConstantPass())
+            .RegisterPass(CreateCompactIdsPass());
+    };
+    if (options.debug) return run("prune", words, options, passes);
+    Result<Words> bare = keep_interface_names(words);
+    if (!bare.ok()) return bare;
+    return run("prune", *bare, options, passes);
+}
+
+Result<Words> spirv_optimise(WordView words, const Options& options) {
+    switch (options.optimise) {
+        case Optimise::none:
+            return Words(words.begin(), words.end());
+        case Optimise::performance:
+            return run("optimise", words, options, register_lean);
+        case Optimise::size:
+            return run("optimise", words, options, [](spvtools::Optimizer& o) {
+                o.RegisterSizePasses();
+                o.RegisterPass(spvtools::CreateCompactIdsPass());
+            });
+    }
+    return Words(words.begin(), words.end());
+}
+
+std::vector<ToolMessage> spirv_validate(WordView words, const Options& options) {
+    std::vector<ToolMessage> messages;
+    try {
+        spvtools::SpirvTools tools(environment_of(options));
+        tools.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
+            std::string line(text);
+            for (char& c : line) c = c == '\n' ? ' ' : c;
+            messages.push_back({severity_of(level), 0, std::move(line)});
+        });
+        spvtools::ValidatorOptions how;
+        how.SetScalarBlockLayout(wants_scalar_layout(words));
+        if (!tools.Validate(words.data(), words.size(), how) && messages.empty()) {
+            messages.push_back({Severity::error, 0, "spirv-val refused the module without a reason"});
+        }
+    } catch (const std::exception& problem) {
+        messages.push_back({Severity::error, 0, std::string("spirv-val failed: ") + problem.what()});
+    }
+    return messages;
+}
+
+Result<std::string> spirv_disassemble(WordView words) {
+    try {
+        spvtools::SpirvTools tools(SPV_ENV_UNIVERSAL_1_6);
+        std::string text;
+        if (tools.Disassemble(words.data(), words.size(), &text)) return text;
+    } catch (const std::exception&) {
+    }
+    return environment_error("the words are no SPIR-V module");
+}
+
+}  // namespace kiln
