@@ -203,7 +203,7 @@ Result<Sheet> render_sheet(ByteView table_bytes, const SheetOptions& options, De
     std::vector<TableShader>& shaders = (*table)->shaders();
     if (shaders.empty()) return input_error("the table has no shader");
     TableShader* shader = options.shader.empty() ? &shaders.front() : (*table)->shader(options.shader);
-    if (shader == nullptr) return Error{Fault::usage, "the table has no shader '" + options.shader + "'"};
+    if (shader == nullptr) return Error{Fault::input, "the table has no shader '" + options.shader + "'"};
 
     std::vector<std::pair<size_t, Digits>> chosen;
     for (const std::string& text : options.variants) {

@@ -37,7 +37,7 @@ Result<std::vector<Task>> collect(TableView& table, const Proof* proof, const Va
         std::vector<std::string> names;
         for (const TableShader& s : table.shaders()) names.push_back(s.space.shader);
         const std::string near = nearest(options.shader, names);
-        return Error{Fault::usage, "the table has no shader '" + options.shader + "'" +
+        return Error{Fault::input, "the table has no shader '" + options.shader + "'" +
                                        (near.empty() ? "" : " (did you mean '" + near + "'?)")};
     }
     report.pipelines_there = there.size();

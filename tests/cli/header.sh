@@ -4,7 +4,7 @@ small_project
 kiln build p/m.yaml -o a.kiln --header key.h >/dev/null
 grep -q constexpr key.h
 for compiler in "g++ -std=c++17" "clang++ -std=c++17"; do
-  $compiler -Wall -Wextra -Werror -fsyntax-only -x c++ key.h
+  echo '#include "key.h"' | $compiler -I. -Wall -Wextra -Werror -fsyntax-only -x c++ -
 done
 touch -d '2001-01-01' key.h
 kiln build p/m.yaml -o a.kiln --header key.h >/dev/null

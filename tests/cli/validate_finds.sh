@@ -6,5 +6,5 @@ kiln build p/m.yaml -o a.kiln >/dev/null
 expect_code 4 kiln validate a.kiln
 expect_out "exactly when bright"
 expect_code 4 kiln validate a.kiln --json
-expect_json "$t/out" 'len(d["failed"])' 2
+expect_json "$t/out" '[f["where"] for f in d["failed"]]' "['in 2 of 5 variants of paint: exactly when bright']"
 expect_json "$t/out" 'd["passed"]' 3
