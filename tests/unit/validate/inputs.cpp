@@ -54,7 +54,7 @@ TEST(Inputs, OrdinaryValuesAreInRange) {
                              64);
     for (uint64_t seed = 0; seed < 200; ++seed) {
         const Bytes b = fill_block(r, seed, false);
-        for (const size_t o : {0, 16, 20, 24, 28}) {
+        for (const size_t o : {0u, 16u, 20u, 24u, 28u}) {
             EXPECT_GE(at(b, o), 0.1f);
             EXPECT_LT(at(b, o), 1.0f);
         }
