@@ -30,7 +30,9 @@ fi
 # The sanitizer build runs the unit tests and the fuzz corpora; device tests run without it, since the driver's JIT is not
 # instrumented.
 build asan
+[ "$full" = yes ] || export KILN_ROUNDS=200  # of random shaders against glslang's preprocessor; all of them run in the dev build
 ctest --preset asan -L 'unit|fuzz' -j "$(nproc)"
+unset KILN_ROUNDS
 
 build dev
 if [ "$full" = yes ]; then
