@@ -333,22 +333,24 @@ void pass_table(Build& build, const BuildOptions& options, PassContext& context)
 }
 
 Build run_pass(const BuildOptions& options, PassContext& context) {
-    Build build;
     const std::string folder = folder_of(normal_path(options.manifest));
     const Digest asked = build_key(options, folder, context.tools);
+    Build remembered;
+    bool found = false;
     {
-        const Timed timed(build, "memo");
+        const Timed timed(remembered, "memo");
         std::vector<SourceRead> reads;
         if (const auto bytes = recall(context.store, context.files, folder, asked, reads)) {
             WireReader in(*bytes);
-            Build remembered;
-            if (read_build(in, remembered, folder)) {
-                remembered.work.cache_hits = 1;
-                list_depends(remembered, reads);
-                return remembered;
-            }
+            found = read_build(in, remembered, folder);
+            list_depends(remembered, reads);
         }
     }
+    if (found) {
+        remembered.work.cache_hits = 1;
+        return remembered;
+    }
+    Build build;
     pass_spaces(build, options, context);
     if (build.ok()) pass_classes(build, options, context);
     const std::vector<SourceRead> reads = all_reads(build, options, context.files);
