@@ -106,7 +106,8 @@ void find_input_images(const PipelineRequest& request, Pipeline& out) {
         for (const auto& [slot, index] : facts_of(s.words).input_attachment_index)
             for (const Resource& r : s.reflection.resources)
                 if (r.kind == ResourceKind::input_attachment && r.set == slot.first && r.binding == slot.second)
-                    out.inputs.push_back({index, format_of(0, r.sampled)});
+                    out.inputs.push_back(
+                        {index, format_of(0, r.sampled), r.multisampled ? VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT});
     std::sort(out.inputs.begin(), out.inputs.end(), [](const InputImage& a, const InputImage& b) { return a.index < b.index; });
 }
 
@@ -116,9 +117,10 @@ void make_pass(Context& context, const PipelineRequest& request, Pipeline& out) 
     find_input_images(request, out);
     std::vector<VkAttachmentDescription> attachments;
     std::vector<VkAttachmentReference> colours, inputs;
-    const auto add = [&](VkFormat format, VkAttachmentLoadOp load, VkImageLayout from) {
-        attachments.push_back({0, format, VK_SAMPLE_COUNT_1_BIT, load, VK_ATTACHMENT_STORE_OP_STORE,
-                               VK_ATTACHMENT_LOAD_OP_DONT_CARE, VK_ATTACHMENT_STORE_OP_DONT_CARE, from, VK_IMAGE_LAYOUT_GENERAL});
+    const auto add = [&](VkFormat format, VkAttachmentLoadOp load, VkImageLayout from,
+                         VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT) {
+        attachments.push_back({0, format, samples, load, VK_ATTACHMENT_STORE_OP_STORE, VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                               VK_ATTACHMENT_STORE_OP_DONT_CARE, from, VK_IMAGE_LAYOUT_GENERAL});
         return static_cast<uint32_t>(attachments.size() - 1);
     };
     for (const Output& o : out.outputs)
@@ -130,7 +132,8 @@ void make_pass(Context& context, const PipelineRequest& request, Pipeline& out) 
                                       VK_IMAGE_LAYOUT_GENERAL};
     for (const InputImage& i : out.inputs) {
         while (inputs.size() < i.index && i.index < 64) inputs.push_back({VK_ATTACHMENT_UNUSED, VK_IMAGE_LAYOUT_UNDEFINED});
-        inputs.push_back({add(i.format.vk, VK_ATTACHMENT_LOAD_OP_LOAD, VK_IMAGE_LAYOUT_GENERAL), VK_IMAGE_LAYOUT_GENERAL});
+        inputs.push_back(
+            {add(i.format.vk, VK_ATTACHMENT_LOAD_OP_LOAD, VK_IMAGE_LAYOUT_GENERAL, i.samples), VK_IMAGE_LAYOUT_GENERAL});
     }
     VkSubpassDescription subpass{};
     subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;

@@ -15,6 +15,7 @@ struct Output {
 struct InputImage {
     uint32_t index = 0;
     Format format;
+    VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;  // those of Images::make
 };
 
 struct Pipeline {

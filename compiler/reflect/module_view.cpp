@@ -190,6 +190,7 @@ private:
                 if (!has(3)) return;
                 if (w[2] == mode_depth_replacing) view_.depth_replacing = true;
                 if (w[2] == mode_early_fragment_tests) view_.early_tests = true;
+                if (w[2] == mode_invocations && has(4)) view_.invocations = w[3];
                 if (w[2] == mode_local_size && has(6)) view_.workgroup = {w[3], w[4], w[5]};
                 return;
             case op_name:

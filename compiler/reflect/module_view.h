@@ -97,6 +97,7 @@ public:
     std::vector<std::string> extensions;
     uint32_t glsl_set = 0;  // id of the GLSL.std.450 import, 0 when absent
     std::array<uint32_t, 3> workgroup{0, 0, 0};
+    uint32_t invocations = 1;  // of a geometry shader
     bool depth_replacing = false, early_tests = false;
     bool imports_debug_printf = false;
     std::vector<Variable> variables;  // at module scope, in order

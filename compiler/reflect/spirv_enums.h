@@ -126,6 +126,7 @@ enum StorageClass : uint32_t {
 };
 
 enum ExecutionMode : uint32_t {
+    mode_invocations = 0,
     mode_early_fragment_tests = 9,
     mode_depth_replacing = 12,
     mode_local_size = 17,

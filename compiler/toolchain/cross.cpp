@@ -8,6 +8,7 @@
 
 #include <memory>
 
+#include "compiler/reflect/spirv_enums.h"
 #include "compiler/toolchain/edits.h"
 #include "compiler/toolchain/limits.h"
 
@@ -125,6 +126,10 @@ private:
         if (target_ != Target::glsl450)
             for (const auto mode : {SpvExecutionModeDepthGreater, SpvExecutionModeDepthLess, SpvExecutionModeDepthUnchanged})
                 spvc_compiler_unset_execution_mode(compiler_, mode);
+        // ESSL has one blend source and so no word for the first; modules with a second are refused.
+        if (language_ == Language::essl)
+            for (const ir::Variable& v : view_.variables)
+                if (v.storage == ir::sc_output) spvc_compiler_unset_decoration(compiler_, v.id, SpvDecorationIndex);
         for (const Edits::Interpolate& i : edits.interpolate) interpolate(i);
         for (const auto decoration : {SpvDecorationLocation, SpvDecorationComponent}) {
             if (edits.unplaced.empty()) break;

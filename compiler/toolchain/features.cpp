@@ -35,6 +35,7 @@ enum Std450 : uint32_t {
     std_interpolate_at_offset = 78,
 };
 
+constexpr uint32_t capability_shader_non_uniform = 5301;
 constexpr uint32_t format_r32f = 3, format_r32i = 24, format_r32ui = 33;
 constexpr uint32_t operand_offset = 0x10, operand_const_offsets = 0x20;
 
@@ -70,6 +71,9 @@ private:
         });
         for (const uint32_t c : v_.capabilities)
             if ((c >= 61 && c <= 68) || c == 4423 || c == 4431) set(Feature::subgroups);  // GroupNonUniform*, Subgroup*KHR
+        for (const uint32_t c : v_.capabilities)
+            if (c == capability_shader_non_uniform) set(Feature::non_uniform);
+        if (v_.invocations > 1) set(Feature::geometry_invocations);
         if (v_.imports_debug_printf) set(Feature::debug_printf);
         if (v_.early_tests) set(Feature::early_tests);
     }

@@ -72,6 +72,8 @@ constexpr Limit limits[] = {
     {Feature::indexed_blocks, "arrays of blocks with an index that is no constant", 400, 320, 0, 0},
     {Feature::subgroups, "subgroup operations", 450, never, 60, 0},
     {Feature::debug_printf, "debugPrintfEXT", never, never, never, never},
+    {Feature::geometry_invocations, "several invocations of a geometry shader", 400, 0, 0, 0},
+    {Feature::non_uniform, "nonuniformEXT", never, never, 0, 0},
 };
 
 // Which stages we can hand over in a language as it is. Metal's and HLSL's geometry and tessellation stages are shaped

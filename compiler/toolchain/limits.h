@@ -57,6 +57,8 @@ enum class Feature : uint8_t {
     indexed_blocks,
     subgroups,
     debug_printf,
+    geometry_invocations,
+    non_uniform,
     count_
 };
 

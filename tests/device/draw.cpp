@@ -190,6 +190,18 @@ void main() { c = subpassLoad(before); }
     EXPECT_GT(as_float(out.runs[0].values.at(0).words.at((32 * 64 + 32) * 4)), 0.0f);
 }
 
+TEST(Draw, MultisampledInputAttachmentBesideAPlainOne) {
+    const PipelineOutput out = run(request_of({plain_vertex(), fragment(R"(
+layout(input_attachment_index = 0, set = 0, binding = 0) uniform subpassInput before;
+layout(input_attachment_index = 1, set = 0, binding = 1) uniform subpassInputMS samples;
+layout(location = 0) out vec4 c;
+void main() { c = subpassLoad(before) + subpassLoad(samples, 3); }
+)")}));
+    expect_clean(out);
+    ASSERT_EQ(out.runs.size(), 2u);
+    EXPECT_GT(as_float(out.runs[0].values.at(0).words.at((32 * 64 + 32) * 4)), 0.0f);
+}
+
 TEST(Draw, TessellationAndGeometry) {
     const StageCode control = compile(Stage::tess_control, R"(#version 450
 layout(vertices = 3) out;

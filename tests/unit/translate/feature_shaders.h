@@ -210,6 +210,21 @@ layout(location=2) flat in uvec4 uv;
 void main(){
 o=v;o2=v;
 })"},
+    {Stage::fragment, "firstsource", R"(layout(location=0,index=0) out vec4 o;
+layout(location=0) in vec4 v;
+void main(){
+o=v;
+})"},
+    {Stage::fragment, "nonuniformsized", R"(#extension GL_EXT_nonuniform_qualifier:require
+layout(binding=0) uniform sampler2D t[4];
+layout(location=0) out vec4 o;
+layout(location=0) in vec4 v;
+layout(location=1) flat in ivec4 iv;
+void main(){
+o=texture(t[nonuniformEXT(iv.x)],v.xy);
+})"},
+    {Stage::geometry, "ginstanced",
+     R"(layout(triangles,invocations=2) in; layout(triangle_strip,max_vertices=3) out; layout(location=0) in vec4 a[]; layout(location=0) out vec4 b; void main(){ for(int i=0;i<3;i++){ gl_Position=gl_in[i].gl_Position; b=a[i]*float(gl_InvocationID); EmitVertex();} EndPrimitive(); })"},
     {Stage::fragment, "early", R"(layout(early_fragment_tests) in;
 layout(binding=0) buffer B{uint n;};
 layout(location=0) out vec4 o;

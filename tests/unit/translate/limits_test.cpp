@@ -79,6 +79,9 @@ TEST(Limits, KnownHolesAreRefusedWithAReason) {
         {"g", Target::msl24, "geometry"},
         {"t", Target::hlsl60, "tess"},
         {"nonuniform", Target::glsl450, "nonuniform"},
+        {"nonuniformsized", Target::glsl450, "nonuniformEXT"},
+        {"nonuniformsized", Target::essl310, "nonuniformEXT"},
+        {"ginstanced", Target::glsl330, "invocations of a geometry shader: not before GLSL 4.00"},
         {"int64", Target::hlsl50, "64-bit"},
     };
     for (const auto& hole : holes) {
@@ -92,6 +95,16 @@ TEST(Limits, KnownHolesAreRefusedWithAReason) {
             << got.text;
         EXPECT_TRUE(got.text.empty()) << hole.name;
     }
+}
+
+TEST(Limits, TheFirstBlendSourceAloneIsNoLimit) {
+    size_t found = 0;
+    for (const FeatureShader& shader : feature_shaders) {
+        if (std::string(shader.name) != "firstsource") continue;
+        ++found;
+        for (const Translated& t : translate(words_of(shader), text_targets())) EXPECT_EQ(t.refusal, "");
+    }
+    EXPECT_EQ(found, 1U);
 }
 
 TEST(Limits, ReasonsHoldNoIdsAndOneLine) {
