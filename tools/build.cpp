@@ -2,6 +2,7 @@
 #include <sys/resource.h>
 
 #include <cstdio>
+#include <filesystem>
 
 #include "tools/console.h"
 #include "tools/json.h"
@@ -68,6 +69,50 @@ std::string depfile(const std::string& output, const std::vector<std::string>& d
     return out + "\n";
 }
 
+struct Output {
+    std::string option, path;
+};
+
+std::vector<Output> outputs_of(const Args& args) {
+    const std::string table = args.value("--output");
+    std::vector<Output> out{{"--output", table}, {"the proof", table + ".proof"}};
+    for (const char* option : {"--header", "--report-json", "--depfile"})
+        if (args.has(option)) out.push_back({option, args.value(option)});
+    return out;
+}
+
+// Links followed, so that two spellings of one file are equal; a name that does not exist yet is only made absolute.
+std::string one_name(const std::string& path) {
+    std::error_code failed;
+    const std::filesystem::path whole = std::filesystem::weakly_canonical(std::filesystem::absolute(path, failed), failed);
+    return failed ? path : whole.string();
+}
+
+// No output may replace a file that the build reads, or another output: a slip of the hand must not cost a shader its source.
+// Devices (/dev/null, /dev/stdout) can be named often.
+Status check_outputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs) {
+    std::vector<std::pair<std::string, const Output*>> taken;
+    std::vector<std::string> read;
+    for (const std::string& input : inputs) read.push_back(one_name(input));
+    for (const Output& output : outputs) {
+        if (output.path.empty()) return Error{Fault::usage, "kiln build: " + output.option + ": the name of a file is missing"};
+        std::error_code failed;
+        const auto there = std::filesystem::status(output.path, failed);
+        if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) continue;
+        const std::string name = one_name(output.path);
+        for (size_t i = 0; i < read.size(); ++i)
+            if (read[i] == name)
+                return Error{Fault::usage, "kiln build: " + output.option + " would overwrite " + inputs[i] +
+                                               ", which this build reads; give it another name"};
+        for (const auto& [other, first] : taken)
+            if (other == name)
+                return Error{Fault::usage, "kiln build: " + first->option + " and " + output.option + " name one file, " +
+                                               output.path + "; give one of them another name"};
+        taken.emplace_back(name, &output);
+    }
+    return {};
+}
+
 Status publish(Files& files, const Args& args, const Build& build, const std::string& output) {
     KILN_TRY(files.write(output + ".proof", build.files.proof));
     if (args.has("--header")) {
@@ -86,10 +131,15 @@ int run_build(const Args& args) {
     if (!args.has("--output")) return print_error({Fault::usage, "kiln build: where to? give -o TABLE.kiln"});
     const auto options = build_options(args);
     if (!options.ok()) return print_error(options.error());
+    const std::vector<Output> outputs = outputs_of(args);
+    std::vector<std::string> named = options->scenes;
+    named.push_back(options->manifest);
+    if (const Status status = check_outputs(outputs, named); !status.ok()) return print_error(status.error());
     auto session = Session::open(args);
     if (!session.ok()) return print_error(session.error());
     const Build build = run_pass(*options, *(*session)->context);
     if (const int code = report_build(build); code != 0) return code;
+    if (const Status status = check_outputs(outputs, build.depends); !status.ok()) return print_error(status.error());
     const std::string output = args.value("--output");
     if (const Status status = publish((*session)->files, args, build, output); !status.ok()) return print_error(status.error());
     if (args.has("--json")) return finish(as_json(build));

@@ -2,7 +2,9 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -66,6 +68,10 @@ Status print_out(const std::string& text) {
 
 int finish(const std::string& text, int code) {
     const Status status = print_out(text);
+    if (!status.ok() && errno == EPIPE) {  // `| head`: the reader has what it wanted; end as every filter does
+        std::signal(SIGPIPE, SIG_DFL);
+        std::raise(SIGPIPE);
+    }
     return status.ok() ? code : print_error(status.error());
 }
 

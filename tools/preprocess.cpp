@@ -43,6 +43,22 @@ std::string laid_out(const Class& c) {
     return out;
 }
 
+// The axes that tell the wanted variants' classes apart: those that the rules and the values given leave open, and that some
+// class's condition within them still needs.
+std::string axes_that_tell(Space& space, const std::vector<Class>& classes, Set wanted) {
+    Diagram& diagram = *space.diagram;
+    std::vector<bool> tells(space.axes.size());
+    for (const Class& c : classes)
+        if (!diagram.disjoint(c.variants, wanted))
+            for (const uint32_t axis : diagram.support(diagram.simplify(c.variants, wanted))) tells[axis] = true;
+    const std::vector<std::vector<bool>> used = diagram.digits_used(wanted);
+    std::string out;
+    for (size_t axis = 0; axis < tells.size(); ++axis)
+        if (tells[axis] && std::count(used[axis].begin(), used[axis].end(), true) > 1)
+            out += (out.empty() ? "" : ", ") + space.axes[axis].name;
+    return out;
+}
+
 int run_preprocess(const Args& args) {
     const auto options = build_options(args);
     if (!options.ok()) return print_error(options.error());
@@ -86,10 +102,8 @@ int run_preprocess(const Args& args) {
             found = &c;
             continue;
         }
-        std::string missing;
-        for (const uint32_t axis : split.axes_read)
-            if (!(*selection)[axis]) missing += (missing.empty() ? "" : ", ") + space.axes[axis].name;
-        return print_error({Fault::usage, "these values leave several classes; say more of: " + missing});
+        return print_error(
+            {Fault::usage, "these values leave several classes; say more of: " + axes_that_tell(space, split.classes, wanted)});
     }
     const std::string text = laid_out(*found);
     if (!args.has("--json")) return finish(text);

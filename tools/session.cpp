@@ -34,14 +34,19 @@ Result<std::unique_ptr<Session>> Session::open(const Args& args) {
 Result<BuildOptions> build_options(const Args& args) {
     BuildOptions options;
     options.manifest = args.words().front();
+    if (options.manifest.empty()) return Error{Fault::usage, "the manifest's name is empty"};
     options.scenes = args.values("--scene");
+    for (const std::string& scene : options.scenes)
+        if (scene.empty()) return Error{Fault::usage, "--scene: the name of a file is missing"};
     for (const std::string& name : args.values("--target")) {
         const auto target = target_named(name);
         if (!target) {
             std::vector<std::string> names;
             for (const Target t : all_targets()) names.emplace_back(name_of(t));
             const std::string near = nearest(name, names);
-            return input_error("no target '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+            std::string known;
+            for (const std::string& other : names) known += (known.empty() ? "; there is " : ", ") + other;
+            return input_error("no target '" + name + "'" + (near.empty() ? known : "; did you mean '" + near + "'?"));
         }
         options.targets.push_back(*target);
     }

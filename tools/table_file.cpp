@@ -11,7 +11,7 @@ bool is_table(Files& files, const std::string& path) {
 
 Result<std::unique_ptr<TableView>> open_table(Files& files, const std::string& path) {
     const auto bytes = files.read(path);
-    KILN_TRY(bytes);
+    if (!bytes.ok()) return input_error(bytes.error().message);  // a folder, no permission: the name is wrong, not the machine
     if (!bytes->has_value()) return input_error(path + ": no such file");
     auto view = TableView::open(as_bytes(**bytes));
     if (!view.ok()) return Error{view.error().fault, path + ": " + view.error().message};

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "compiler/device/vulkan_device.h"
+#include "compiler/table/proof.h"
 #include "tools/console.h"
 #include "tools/json.h"
 #include "tools/session.h"
@@ -71,9 +72,16 @@ Result<ValidateReport> run(const Args& args, Session& session) {
     KILN_TRY(table);
     const std::string proof_path = args.value("--proof", path + ".proof");
     const auto proof = session.files.read(proof_path);
-    KILN_TRY(proof);
+    if (!proof.ok()) return input_error(proof.error().message);
+    if (!proof->has_value() && args.has("--proof")) return input_error(proof_path + ": no such file");
     if (!proof->has_value())
         print_note("warning: no proof at " + proof_path + ": nothing can be compared with what the build recorded");
+    if (proof->has_value()) {
+        const auto checked = read_proof(as_bytes(**proof), (*table)->bytes());
+        if (!checked.ok())
+            return input_error(proof_path + ": " + checked.error().message +
+                               "; build the table again, both are written together");
+    }
 
     ValidateOptions options;
     options.shader = args.value("--shader");
