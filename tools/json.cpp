@@ -1,5 +1,6 @@
 #include "tools/json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -80,7 +81,9 @@ Json& Json::number(uint64_t value) {
 Json& Json::number(double value) {
     separate();
     char buffer[40];
-    std::snprintf(buffer, sizeof buffer, "%.6g", std::isfinite(value) ? value : 0.0);
+    // JSON has no infinity: a count past every double is written as the largest that parses.
+    const double most = 1.79769e308;
+    std::snprintf(buffer, sizeof buffer, "%.6g", std::isnan(value) ? 0.0 : std::clamp(value, -most, most));
     out_ += buffer;
     return *this;
 }
