@@ -1,6 +1,6 @@
 #pragma once
-// Rule expressions (grammar: ARCHITECTURE.md, Manifests and scenes) as a flat tree: children come before their parent, the root is last, so
-// that neither walking nor destroying a long expression recurses.
+// Rule expressions (grammar: ARCHITECTURE.md, Manifests and scenes) as a flat tree: children come before their parent, the root
+// is last, so that neither walking nor destroying a long expression recurses.
 
 #include <cstdint>
 #include <optional>

@@ -1,5 +1,6 @@
 #pragma once
-// A manifest as a value. Grammar: ARCHITECTURE.md, Manifests and scenes, manifests/manifest.schema.json. Every mistake is collected with its place.
+// A manifest as a value. Grammar: ARCHITECTURE.md, Manifests and scenes, manifests/manifest.schema.json. Every mistake is
+// collected with its place.
 
 #include <optional>
 #include <string>

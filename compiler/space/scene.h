@@ -1,6 +1,6 @@
 #pragma once
-// What scenes can draw, as restrictions of the spaces (ARCHITECTURE.md, Manifests and scenes). A scene can only be too large, never too small.
-// A YAML file is one source of scenes; whatever else says what is drawn becomes a Scene value as well.
+// What scenes can draw, as restrictions of the spaces (ARCHITECTURE.md, Manifests and scenes). A scene can only be too large,
+// never too small. A YAML file is one source of scenes; whatever else says what is drawn becomes a Scene value as well.
 
 #include <memory>
 #include <string>

@@ -208,8 +208,8 @@ TEST(Expr, NamesPastTheIndexThreshold) {
     }
 }
 
-// The oracle: a tree is made at random, written down with as few parentheses as the grammar of ARCHITECTURE.md, Manifests and scenes needs
-// (sometimes more), and evaluated by walking it. The parser sees only the text.
+// The oracle: a tree is made at random, written down with as few parentheses as the grammar of ARCHITECTURE.md, Manifests and
+// scenes needs (sometimes more), and evaluated by walking it. The parser sees only the text.
 struct Tree {
     enum Kind { axis, integer, implies, either, both, negate, compare, member } kind = axis;
     int number = 0;  // axis, integer, or which comparison

@@ -159,7 +159,8 @@ void Sample::add(const SampleShader& shader, size_t index) {
             if (of[m] != no_artifact) continue;
             of[m] = static_cast<uint32_t>(artifacts_.list.size());
             std::string text = "// " + shader.name + " " + std::to_string(m) + "\n";
-            for (uint32_t line = 0; line < 40; ++line) text += "vec4 line" + std::to_string(line * (line % 7 + m)) + " = vec4(0.0);\n";
+            for (uint32_t line = 0; line < 40; ++line)
+                text += "vec4 line" + std::to_string(line * (line % 7 + m)) + " = vec4(0.0);\n";
             artifacts_.list.push_back({manifest.targets[t], text});
         }
     }
