@@ -299,6 +299,24 @@ TEST(Draw, TwiceIsTheSame) {
     EXPECT_NE(first.runs[0].values[0].words, first.runs[1].values[0].words) << "the two sets of inputs differ";
 }
 
+// Valid words that the driver's parser may not know run, or are the device's limit; they never fail.
+TEST(Draw, CopiesOfStructuresRunOrAreUnsupported) {
+    Options options;
+    options.vulkan = 0x102;
+    options.spirv = 0x105;
+    const Compiled copy = glsl_compile(Stage::fragment, R"(#version 450
+struct M { vec4 tint; uint n; };
+layout(set = 0, binding = 0, std140) uniform B { M m[4]; };
+layout(location = 0) out vec4 c;
+void main() { M one = m[1]; c = one.tint * float(one.n); }
+)",
+                                       options);
+    ASSERT_FALSE(copy.words.empty());
+    const PipelineOutput out = run(request_of({plain_vertex(), stage_of(copy.words)}));
+    EXPECT_TRUE(out.errors.empty()) << out.errors.front();
+    EXPECT_NE(out.unsupported.empty(), out.runs.empty());
+}
+
 TEST(Draw, MeshAndRayStagesAreUnsupportedNotFailed) {
     StageCode s = plain_vertex();
     s.stage = Stage::raygen;
