@@ -94,7 +94,8 @@ Answer answer_of(Build& build, Space& space, const Selection& selection) {
 }
 
 std::string as_text(const Answer& answer) {
-    std::string out = answer.shader + " " + answer.variant + ": " + answer.status;
+    std::string out =
+        answer.shader + " " + answer.variant + ": " + (answer.status == "partly" ? "needed in part" : answer.status);
     if (!(answer.selected == Count(1)))
         out += " (" + answer.selected.grouped() + " combinations, " + answer.legal.grouped() + " legal, " +
                answer.needed.grouped() + " needed)";

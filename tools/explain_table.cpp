@@ -91,7 +91,8 @@ int explain_table(const Args& args, Session& session) {
         json.end().end();
         return finish(json.take());
     }
-    std::string out = shader.space.shader + " " + variant + ": " + status + "\n";
+    std::string out = shader.space.shader + " " + variant + ": " +
+                      (status == "partly" ? "needed in part, " + needed.grouped() + " variants" : status) + "\n";
     for (const std::string& text : because) out += "  " + text + "\n";
     for (const StageModules& stage : stages) {
         for (size_t i = 0; i < stage.reached.size() && i < 8; ++i)

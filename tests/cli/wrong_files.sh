@@ -21,3 +21,8 @@ expect_code 2 kiln help cuont
 expect_err "did you mean 'count'?"
 expect_code 0 kiln help count
 expect_out "kiln count MANIFEST"
+# A selection of which the rules leave only a part says so.
+kiln explain p/m.yaml bright=true >out
+expect_out "paint bright=true: needed in part (3 combinations, 2 legal, 2 needed)"
+kiln explain a.kiln bright=true >out
+expect_out "paint bright=true: needed in part, 2 variants"
