@@ -379,7 +379,7 @@ private:
         const uint32_t bare = strip_arrays(v_, type_id, lengths);
         const bool block = v_.type(bare).kind == Kind::structure && v_.marks(bare).block;
         base.name = block ? v_.name(bare) : v_.name(variable.id);
-        if (block && v_.type(bare).members.size() && v_.member_marks(bare, 0).builtin != ir::none) return;  // gl_PerVertex
+        if (block && !v_.type(bare).members.empty() && v_.member_marks(bare, 0).builtin != ir::none) return;  // gl_PerVertex
         base.component = marks.component == ir::none ? 0 : marks.component;
         base.index = marks.index == ir::none ? 0 : marks.index;
         qualify(base, marks);
