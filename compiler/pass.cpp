@@ -95,9 +95,14 @@ void warn_unread_axes(Build& build) {
         for (const uint32_t axis : build.splits[i]->axes_read) read[shader.axes[axis]] = true;
     }
     for (size_t a = 0; a < manifest.axes.size(); ++a)
-        if (used[a] && !read[a])
-            build.diags.warning(manifest.axes[a].place, "no stage reads the macro " + manifest.axes[a].macro + " of axis '" +
-                                                            manifest.axes[a].name + "': it multiplies variants, not code");
+        if (used[a] && !read[a]) {
+            const Axis& axis = manifest.axes[a];
+            Diag& warning = build.diags.warning(axis.place, "no stage reads the macro " + axis.macro + " of axis '" + axis.name +
+                                                                "': it multiplies variants, not code");
+            if (axis.kind == AxisKind::boolean)
+                warning.notes.push_back("#ifdef " + axis.macro + " is always true for it: write #if " + axis.macro +
+                                        ", or give the axis 'values: defined'");
+        }
 }
 
 void count_spaces(Build& build) {
