@@ -6,33 +6,7 @@ typedef char kiln_assert_header[sizeof(kf_header) == 32 ? 1 : -1];
 typedef char kiln_assert_entry[sizeof(kf_entry) == 40 ? 1 : -1];
 typedef char kiln_assert_sections[kf_section_last < sizeof((kiln_table*)0)->section / sizeof(kiln_section) ? 1 : -1];
 
-static const uint8_t strides[kf_section_last + 1] = {
-    0,
-    sizeof(kf_info_record),
-    1,
-    sizeof(kf_text),
-    4,
-    8,
-    sizeof(kf_shader_record),
-    sizeof(kf_axis_record),
-    sizeof(kf_value_record),
-    sizeof(kf_stage_record),
-    sizeof(kf_rule_record),
-    sizeof(kf_diagram_record),
-    4,
-    sizeof(kf_check_record),
-    sizeof(kf_slot_record),
-    sizeof(kf_pipeline_record),
-    sizeof(kf_module_record),
-    sizeof(kf_reflection_record),
-    sizeof(kf_resource_record),
-    sizeof(kf_member_record),
-    sizeof(kf_varying_record),
-    sizeof(kf_artifact_record),
-    sizeof(kf_block_record),
-    1,
-    4,
-};
+static const uint8_t strides[kf_section_last + 1] = KF_STRIDES;
 
 /* Sections of plain numbers and bytes, whose records never grow. */
 static int is_plain(uint32_t kind) {

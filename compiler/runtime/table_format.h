@@ -232,4 +232,14 @@ static inline uint64_t kf_checksum(const uint8_t* data, uint64_t words, uint64_t
 #define KF_NO_SKIP 0xffffffffffffffffu
 #define KF_HEADER_SKIP (sizeof(kf_header) / 8 - 1) /* the last word of the header */
 
+/* Bytes of one record, by section: what this version writes, and the least that a reader accepts. */
+#define KF_STRIDES                                                                                                         \
+    {                                                                                                                      \
+        0, sizeof(kf_info_record), 1, sizeof(kf_text), 4, 8, sizeof(kf_shader_record), sizeof(kf_axis_record),             \
+            sizeof(kf_value_record), sizeof(kf_stage_record), sizeof(kf_rule_record), sizeof(kf_diagram_record), 4,        \
+            sizeof(kf_check_record), sizeof(kf_slot_record), sizeof(kf_pipeline_record), sizeof(kf_module_record),         \
+            sizeof(kf_reflection_record), sizeof(kf_resource_record), sizeof(kf_member_record), sizeof(kf_varying_record), \
+            sizeof(kf_artifact_record), sizeof(kf_block_record), 1, 4                                                      \
+    }
+
 #endif

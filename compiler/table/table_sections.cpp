@@ -5,31 +5,7 @@ namespace kiln {
 namespace {
 
 // Strides of sections that may stay empty, so that their entries still say what their records are.
-constexpr size_t strides[kf_section_last + 1] = {0,
-                                                 sizeof(kf_info_record),
-                                                 1,
-                                                 sizeof(kf_text),
-                                                 4,
-                                                 8,
-                                                 sizeof(kf_shader_record),
-                                                 sizeof(kf_axis_record),
-                                                 sizeof(kf_value_record),
-                                                 sizeof(kf_stage_record),
-                                                 sizeof(kf_rule_record),
-                                                 sizeof(kf_diagram_record),
-                                                 4,
-                                                 sizeof(kf_check_record),
-                                                 sizeof(kf_slot_record),
-                                                 sizeof(kf_pipeline_record),
-                                                 sizeof(kf_module_record),
-                                                 sizeof(kf_reflection_record),
-                                                 sizeof(kf_resource_record),
-                                                 sizeof(kf_member_record),
-                                                 sizeof(kf_varying_record),
-                                                 sizeof(kf_artifact_record),
-                                                 sizeof(kf_block_record),
-                                                 1,
-                                                 4};
+constexpr size_t strides[kf_section_last + 1] = KF_STRIDES;
 
 constexpr uint64_t index_limit = 0x7fffffff;
 
