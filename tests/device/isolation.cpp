@@ -31,13 +31,19 @@ void main() {
 )");
 }
 
+// llvmpipe ends every loop after 65,535 rounds, so each round must be long: some hours a draw in all.
 StageCode hang() {
+    std::string round;
+    for (int i = 0; i < 48; ++i) round += "x = sin(x * 1.7 + float(b.n++)) + pow(abs(x), 1.3);\n";
     return fragment(R"(
-layout(set = 0, binding = 0) buffer B { uint go; uint n; } b;
+layout(set = 0, binding = 0) buffer B { uint go; uint n; float x; } b;
 layout(location = 0) out vec4 c;
 void main() {
-    while (b.go != 77u) b.n++;
-    c = vec4(1.0);
+    float x = gl_FragCoord.x;
+    while (b.go != 77u) {
+)" + round + R"(
+    }
+    c = vec4(x);
 }
 )");
 }
