@@ -13,7 +13,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 # The folders of compiler/ in the order of the data: each may include itself and what stands before it. Files directly in
 # compiler/ are the pass.
 ORDER = ["base", "runtime", "manifest", "space", "split", "reflect", "toolchain", "modules", "translate", "interfaces", "table", "pass",
-         "validate", "device"]
+         "bake", "validate", "device"]
 
 # Third-party header prefix -> the files that may include it.
 THIRD_PARTY = {
@@ -102,6 +102,8 @@ def main():
     breaches = []
     for folder in ("compiler", "cache", "tools", "tests"):
         for path in sorted((ROOT / folder).rglob("*")):
+            if "node_modules" in path.parts:
+                continue
             if path.relative_to(ROOT).parts[:2] == ("tools", "examples"):
                 continue  # projects outside, which see what is installed
             if path.suffix in (".h", ".hpp", ".cpp", ".c"):

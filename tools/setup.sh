@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs every Debian 12 package that building, testing and demonstrating kiln needs. Idempotent; works as root or with sudo.
+# Installs every Debian 12 package that building, testing and demonstrating kiln needs, and the BC encoder of compiler/bake
+# from the npm registry. Idempotent; works as root or with sudo.
 # With --bench it adds the tools that bench_peers.sh measures against.
 set -euo pipefail
 
@@ -23,12 +24,31 @@ for argument in "$@"; do
   esac
 done
 
+# Node runs the BC encoder of compiler/bake; any Node from 18 on does, from wherever it came.
+if ! command -v node >/dev/null; then packages+=(nodejs); fi
+if ! command -v npm >/dev/null; then packages+=(npm); fi
+
+# The encoder itself: one pinned package, beside the script that uses it.
+install_bake() {
+  local bake; bake="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)/compiler/bake"
+  local wanted; wanted=$(grep -o '"ktx2-encoder": "[0-9.]*"' "$bake/package.json" | cut -d'"' -f4)
+  if grep -qs "\"version\": \"$wanted\"" "$bake/node_modules/ktx2-encoder/package.json"; then return 0; fi
+  for attempt in 1 2 3; do
+    if (cd "$bake" && npm install --no-package-lock --no-audit --no-fund --silent); then return 0; fi
+    echo "setup: attempt $attempt failed" >&2
+    sleep $((attempt * 5))
+  done
+  echo "setup.sh: could not install what compiler/bake/package.json names" >&2
+  exit 3
+}
+
 missing=()
 for package in "${packages[@]}"; do
   state=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
   [ "$state" = installed ] || missing+=("$package")
 done
 if [ ${#missing[@]} -eq 0 ]; then
+  install_bake
   echo "setup: all ${#packages[@]} packages are installed"
   exit 0
 fi
@@ -42,6 +62,7 @@ echo "setup: installing ${missing[*]}"
 export DEBIAN_FRONTEND=noninteractive
 for attempt in 1 2 3; do
   if "${as_root[@]}" apt-get update -q && "${as_root[@]}" apt-get install -y -q --no-install-recommends "${missing[@]}"; then
+    install_bake
     exit 0
   fi
   echo "setup: attempt $attempt failed" >&2
