@@ -45,6 +45,9 @@ inline double min(double a, double b) { return std::fmin(a, b); }
 inline float min(float a, float b) { return std::fmin(a, b); }
 inline double max(double a, double b) { return std::fmax(a, b); }
 inline float max(float a, float b) { return std::fmax(a, b); }
+// GLSL's int(x).
+inline int to_int(double x) { return static_cast<int>(x); }
+inline int to_int(float x) { return static_cast<int>(x); }
 
 inline constexpr double pi = 3.14159265358979323846;
 
@@ -199,7 +202,7 @@ T mix(const T& a, const T& b, const T& t) {
 }
 template <class T>
 Vec3<T> mix(const Vec3<T>& a, const Vec3<T>& b, const T& t) {
-    return a * (T(1) - t) + b * t;
+    return {mix(a.x, b.x, t), mix(a.y, b.y, t), mix(a.z, b.z, t)};
 }
 template <class T>
 T step(const T& edge, const T& x) {
