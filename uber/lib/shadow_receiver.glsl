@@ -39,7 +39,7 @@ vec2 receiver_depth_slope(vec3 dx, vec3 dy, float limit) {
 // Depth bias at which a plane cannot shadow itself: what it rises on the way to the furthest texel centre that a look-up
 // may read, and two quanta of the map for rounding on either side ((z w) / w against z).
 // slope: depth a uv, from above. reach: uv; half a texel for a nearest comparison, a whole one for a bilinear one.
-// quantum: depth units: 1 / 65535 for D16, 2^-24 for D24 and D32F.
+// quantum: depth units: 1 / 65535 for D16; 2^-23 for D24 and D32F, half of which is for the matrix product before.
 float receiver_depth_bias(vec2 slope, vec2 reach, float quantum) {
     return dot(abs(slope), reach) + 2.0 * quantum;
 }

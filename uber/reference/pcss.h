@@ -1,0 +1,109 @@
+#pragma once
+// Percentage-closer soft shadows, as uber/lib/pcss.glsl names them. Depth is a callable uv -> depth, a comparison map one of
+// (uv, depth) -> 1 lit or 0. What the shader takes as macros stands in PcssTaps.
+
+#include "uber/reference/pcf.h"
+#include "uber/reference/shadow_receiver.h"
+
+namespace kiln::reference {
+
+struct PcssTaps {
+    int blocker = 32, filter = 32;
+    bool disk_light = false;
+};
+
+// The z whose depth under a perspective from near to far is `depth`: depth = far (z - near) / (z (far - near)).
+template <class T>
+T light_distance(const T& depth, const T& near, const T& far) {
+    return near * far / (far - depth * (far - near));
+}
+
+template <class T>
+T map_distance(const T& depth, const T& near, const T& far) {
+    return near > T(0) ? light_distance(depth, near, far) : far * depth;
+}
+
+template <class T>
+T pcss_search_width(const T& receiver, const T& near, const T& size) {
+    return receiver > near ? size * (receiver - near) / receiver : T(0);
+}
+
+template <class T>
+T pcss_penumbra_width(const T& receiver, const T& blocker, const T& size, const T& least, const T& most) {
+    return clamp(size * (receiver - blocker) / max(blocker, T(1e-6)), least, most);
+}
+
+template <class T>
+T pcss_penumbra_width_directional(const T& receiver, const T& blocker, const T& angular_size, const T& least, const T& most) {
+    return clamp(angular_size * (receiver - blocker), least, most);
+}
+
+template <class T>
+Vec2<T> pcss_tap(int i, int count, const Vec2<T>& jitter, bool disk_light = false) {
+    if (disk_light) {
+        const T radius = sqrt(T(2 * i + 1) / T(2 * count)) / T(2);
+        const T angle = T(i) * T(2.39996323) + T(2 * pi) * jitter.x;
+        return {radius * cos(angle), radius * sin(angle)};
+    }
+    const int step = count == 16 ? 5 : count == 32 ? 7 : count == 64 ? 19 : (count * 5 / 8) | 1;
+    const auto cell = [&](int k, const T& shift) { return fract((T(k) + T(0.5)) / T(count) + shift) - T(0.5); };
+    return {cell(i, jitter.x), cell((i * step) % count, jitter.y)};
+}
+
+template <class T, class Depth>
+Vec2<T> pcss_blockers(const Depth& map, const Vec3<T>& place, const Vec2<T>& slope, const T& bias, const Vec2<T>& width,
+                      const T& near, const T& far, const Vec2<T>& jitter, const PcssTaps& taps = {}) {
+    T sum(0);
+    int blockers = 0;
+    for (int i = 0; i < taps.blocker; ++i) {
+        const Vec2<T> offset = pcss_tap(i, taps.blocker, jitter, taps.disk_light) * width;
+        const Vec2<T> uv = place.xy() + offset;
+        const T receiver = place.z + dot(slope, offset) - bias;
+        if (!(uv.x >= T(0) && uv.y >= T(0) && uv.x <= T(1) && uv.y <= T(1) && receiver <= T(1))) continue;
+        const T depth = saturate(T(map(uv)));
+        if (!(depth < receiver)) continue;
+        sum = sum + map_distance(depth, near, far);
+        ++blockers;
+    }
+    return {blockers > 0 ? sum / T(blockers) : T(0), T(blockers) / T(taps.blocker)};
+}
+
+template <class T, class Compare>
+T pcss_filter(const Compare& map, const Vec3<T>& place, const Vec2<T>& slope, const T& bias, const Vec2<T>& width,
+              const Vec2<T>& jitter, const PcssTaps& taps = {}) {
+    T lit(0);
+    for (int i = 0; i < taps.filter; ++i)
+        lit = lit + shadow_tap(map, place, slope, bias, pcss_tap(i, taps.filter, jitter, taps.disk_light) * width);
+    return lit / T(taps.filter);
+}
+
+template <class T, class Depth, class Compare>
+T pcss_factor(const Depth& depth_map, const Compare& shadow_map, const Vec4<T>& clip, const Vec2<T>& slope, const T& bias,
+              const T& size, const T& near, const T& far, const T& extent, const T& texel, const Vec2<T>& jitter,
+              const PcssTaps& taps = {}) {
+    const Vec4<T> place = shadow_coordinates(clip);
+    if (!(place.w > T(0))) return T(1);
+    const T receiver = clamp(clip.w, near, far);
+    const T search = max(pcss_search_width(receiver, near, size) / (extent * near), texel);
+    const Vec2<T> blockers = pcss_blockers(depth_map, place.xyz(), slope, bias, Vec2<T>{search, search}, near, far, jitter, taps);
+    if (!(blockers.y > T(0))) return T(1);
+    const T metres = extent * receiver;  // of the map's width at the receiver
+    const T width = pcss_penumbra_width(receiver, blockers.x, size, texel * metres, search * metres) / metres;
+    return pcss_filter(shadow_map, place.xyz(), slope, bias, Vec2<T>{width, width}, jitter, taps);
+}
+
+template <class T, class Depth, class Compare>
+T pcss_factor_directional(const Depth& depth_map, const Compare& shadow_map, const Vec4<T>& clip, const Vec2<T>& slope,
+                          const T& bias, const T& angular_size, const T& range, const T& extent, const T& texel,
+                          const Vec2<T>& jitter, const PcssTaps& taps = {}) {
+    const Vec4<T> place = shadow_coordinates(clip);
+    if (!(place.w > T(0))) return T(1);
+    const T search = max(angular_size * place.z * range / extent, texel);
+    const Vec2<T> blockers =
+        pcss_blockers(depth_map, place.xyz(), slope, bias, Vec2<T>{search, search}, T(0), range, jitter, taps);
+    if (!(blockers.y > T(0))) return T(1);
+    const T width = pcss_penumbra_width_directional(place.z * range, blockers.x, angular_size, texel * extent, search * extent);
+    return pcss_filter(shadow_map, place.xyz(), slope, bias, Vec2<T>{width / extent, width / extent}, jitter, taps);
+}
+
+}  // namespace kiln::reference

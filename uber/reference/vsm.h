@@ -1,0 +1,94 @@
+#pragma once
+// Variance shadow maps, as uber/lib/vsm.glsl names them. Where the shader sums over a table, the reference adds up texels.
+
+#include <vector>
+
+#include "uber/reference/shadow_receiver.h"
+
+namespace kiln::reference {
+
+template <class T>
+Vec2<T> shadow_moments(const T& distance, const T& far, const T& reference) {
+    const T q = distance / far - reference;
+    return {q, q * q};
+}
+template <class T>
+Vec2<T> shadow_moments(const T& distance, const T& far, const T& reference, const Vec2<T>& gradient) {
+    const T q = distance / far - reference;
+    return {q, q * q + dot(gradient, gradient) / T(12)};
+}
+
+template <class T>
+T moments_variance(const Vec2<T>& moments, const T& least) {
+    return max(moments.y - moments.x * moments.x, least);
+}
+
+template <class T>
+T chebyshev_upper_bound(const Vec2<T>& moments, const T& t, const T& least) {
+    if (!(t > moments.x)) return T(1);
+    const T variance = moments_variance(moments, least);
+    return variance / (variance + (t - moments.x) * (t - moments.x));
+}
+
+template <class T>
+T reduce_light_bleeding(const T& lit, const T& amount) {
+    return saturate((lit - amount) / (T(1) - amount));
+}
+
+// (m - p t) / (1 - p): what is left of the mean when the lit share at t is taken out.
+template <class T>
+T vssm_blocker(const Vec2<T>& moments, const T& t, const T& lit) {
+    return lit > T(0.999) ? t : (moments.x - lit * t) / (T(1) - lit);
+}
+
+template <class T>
+T vsm_factor(const Vec2<T>& moments, const T& distance, const T& far, const T& reference, const T& least, const T& bleeding) {
+    return reduce_light_bleeding(chebyshev_upper_bound(moments, distance / far - reference, least), bleeding);
+}
+
+// average: callable (centre, width) in uv -> mean moments.
+template <class T, class Average>
+T vssm_factor(const Average& average, const Vec4<T>& clip, const T& size, const T& near, const T& far, const T& extent,
+              const T& texel, const T& reference, const T& least, const T& bleeding) {
+    const Vec4<T> place = shadow_coordinates(clip);
+    if (!(place.w > T(0))) return T(1);
+    const T receiver = clamp(clip.w, near, far);
+    const T t = receiver / far - reference;
+    const T search = max(size * (receiver - near) / (receiver * extent * near), texel);
+    const Vec2<T> around = average(place.xy(), Vec2<T>{search, search});
+    const T lit_around = chebyshev_upper_bound(around, t, least);
+    if (lit_around > T(0.999)) return T(1);
+    const T blocker = max((vssm_blocker(around, t, lit_around) + reference) * far, near);
+    const T width = clamp(size * (receiver - blocker) / (blocker * extent * receiver), texel, search);
+    return reduce_light_bleeding(chebyshev_upper_bound(average(place.xy(), Vec2<T>{width, width}), t, least), bleeding);
+}
+
+// A square map of moments, row after row.
+struct MomentMap {
+    int size = 0;
+    std::vector<Vec2<double>> texels;
+    const Vec2<double>& at(int x, int y) const {
+        return texels[static_cast<size_t>(y) * static_cast<size_t>(size) + static_cast<size_t>(x)];
+    }
+
+    // Mean over a box of uv, kept inside the map and not smaller than a texel, each texel weighed by what the box covers of it.
+    Vec2<double> average(const Vec2<double>& centre, const Vec2<double>& width) const {
+        double low[2], high[2];
+        const double c[2] = {centre.x, centre.y}, w[2] = {width.x, width.y};
+        for (int k = 0; k < 2; ++k) {
+            const double half = std::min(std::max(w[k] * size / 2, 0.5), size / 2.0);
+            const double middle = std::min(std::max(c[k] * size, half), size - half);
+            low[k] = middle - half, high[k] = middle + half;
+        }
+        Vec2<double> sum;
+        for (int y = static_cast<int>(low[1]); y < size && y < high[1]; ++y)
+            for (int x = static_cast<int>(low[0]); x < size && x < high[0]; ++x) {
+                const double covered = (std::min(high[0], x + 1.0) - std::max(low[0], x + 0.0)) *
+                                       (std::min(high[1], y + 1.0) - std::max(low[1], y + 0.0));
+                sum = sum + at(x, y) * covered;
+            }
+        return sum / ((high[0] - low[0]) * (high[1] - low[1]));
+    }
+};
+
+}  // namespace kiln::reference
