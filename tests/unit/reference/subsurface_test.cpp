@@ -1,0 +1,196 @@
+// Subsurface references against closed forms, printed values and random walks.
+
+#include "uber/reference/subsurface.h"
+
+#include <gtest/gtest.h>
+
+#include "uber/reference/subsurface_preintegrated.h"
+#include "uber/reference/subsurface_separable.h"
+#include "uber/reference/subsurface_walk.h"
+
+namespace kiln::reference {
+namespace {
+
+// Integral over [0, inf) by r = x / (1 - x) and the midpoint rule.
+template <class F>
+double integral_to_infinity(F f, int n = 200000) {
+    double sum = 0;
+    for (int i = 0; i < n; ++i) {
+        const double x = (i + 0.5) / n;
+        sum += f(x / (1 - x)) / ((1 - x) * (1 - x));
+    }
+    return sum / n;
+}
+
+TEST(Subsurface, WrappedDiffuseMakesNoEnergy) {
+    for (const double wrap : {0.0, 0.3, 1.0}) {
+        double sum = 0;
+        const int n = 100000;
+        for (int i = 0; i < n; ++i) sum += wrap_diffuse(2 * (i + 0.5) / n - 1, wrap);
+        EXPECT_NEAR(2 * pi * sum * 2 / n, pi, 1e-8) << wrap;
+    }
+}
+
+TEST(Subsurface, ShapesHaveThePrintedValues) {
+    const double albedo[] = {0.2, 0.5, 0.8, 0.95};
+    const double searchlight[] = {3.162, 1.539, 1.05, 0.923625};
+    const double diffuse[] = {2.96, 1.715, 1.1, 1.02875};
+    const double path[] = {3.528561, 3.583521, 8.379681, 18.276336};
+    for (int i = 0; i < 4; ++i) {
+        EXPECT_NEAR(burley_shape_searchlight(splat3(albedo[i])).x, searchlight[i], 1e-12);
+        EXPECT_NEAR(burley_shape_diffuse(splat3(albedo[i])).x, diffuse[i], 1e-12);
+        EXPECT_NEAR(burley_shape_mean_free_path(splat3(albedo[i])).x, path[i], 1e-12);
+    }
+}
+
+TEST(Subsurface, BurleyProfileIntegratesToOneAndItsShareFollows) {
+    for (const double s : {0.1, 1.0, 40.0}) {
+        const auto ring = [&](double r) { return 2 * pi * burley_profile_r(r, splat3(s)).x; };
+        EXPECT_NEAR(integral_to_infinity(ring), 1, 1e-7) << s;
+        const auto guarded = [&](double r) { return 2 * pi * r * burley_profile(r, splat3(s)).x; };
+        EXPECT_NEAR(integral_to_infinity(guarded), 1, 1e-3) << s;  // row 33
+        double share = 0;
+        const double end = 2 / s;
+        const int n = 10000;
+        for (int i = 0; i < n; ++i) share += ring(end * (i + 0.5) / n) * end / n;
+        EXPECT_NEAR(share, burley_cumulative(end, s), 1e-8) << s;
+    }
+    EXPECT_TRUE(std::isfinite(burley_profile(0.0, splat3(1.0)).x));
+}
+
+TEST(Subsurface, BurleyRadiusIsTheInverse) {
+    for (const double u : {0.0, 1e-9, 1e-3, 0.2, 0.5, 0.9, 0.999, 1 - 1e-6})
+        EXPECT_NEAR(burley_cumulative(burley_radius(u, 2.5), 2.5), u, 1e-14) << u;
+    EXPECT_NEAR(burley_radius(1.0, 1.0), burley_radius(1 - 1e-7, 1.0), 1e-9);
+}
+
+TEST(Subsurface, BurleyTapsGatherAConstantAndTheMeanSquareDistance) {
+    const auto constant = [](const Vec2<double>&) { return Vec3<double>{1, 2, 3}; };
+    const Vec3<double> s{1, 2, 4};
+    const Vec3<double> got = burley_gather<double>(constant, {0, 0}, {1, 1}, s, 1.0, 0.3, 16);
+    EXPECT_NEAR(got.x, 1, 1e-14);
+    EXPECT_NEAR(got.z, 3, 1e-14);
+    // Mean of r^2 is 14/s^2, as burley_gaussian_variance has it.
+    const auto square = [&](double r) { return 2 * pi * r * r * burley_profile_r(r, splat3(2.0)).x; };
+    EXPECT_NEAR(integral_to_infinity(square) / 2, burley_gaussian_variance(2.0), 1e-6);
+}
+
+TEST(Subsurface, DipoleAlbedosHaveThePrintedValues) {
+    const double albedo[] = {0.5, 0.9, 0.99, 0.999, 0.99999};
+    const double at_13[] = {0.07450688, 0.29912916, 0.64452549, 0.86391606, 0.98516762};
+    const double at_15[] = {0.07357244, 0.27465814, 0.58310283, 0.82701072, 0.98035478};
+    EXPECT_NEAR(dipole_boundary(1.3), 2.6020644, 5e-8);
+    EXPECT_NEAR(dipole_boundary(1.5), 3.9594974, 5e-8);
+    for (int i = 0; i < 5; ++i) {
+        EXPECT_NEAR(dipole_albedo(splat3(albedo[i]), dipole_boundary(1.3)).x, at_13[i], 5e-9);
+        EXPECT_NEAR(dipole_albedo(splat3(albedo[i]), dipole_boundary(1.5)).x, at_15[i], 5e-9);
+    }
+    EXPECT_NEAR(dipole_albedo(splat3(1.0), dipole_boundary(1.3)).x, 1, 1e-15);  // row 33
+}
+
+TEST(Subsurface, DipoleProfileIntegratesToItsAlbedo) {
+    for (const double eta : {1.3, 1.5})
+        for (const double a : {0.5, 0.9, 0.99}) {
+            const double boundary = dipole_boundary(eta);
+            const auto ring = [&](double r) { return 2 * pi * r * dipole_profile(r, a, 1 - a, boundary); };
+            EXPECT_NEAR(integral_to_infinity(ring), dipole_albedo(splat3(a), boundary).x, 1e-7) << eta << ' ' << a;
+        }
+}
+
+TEST(Subsurface, CircleOfClampedCosineIsItsMean) {
+    for (const double theta : {0.0, 0.4, 1.5, 2.0, 3.1})
+        for (const double omega : {0.01, 0.7, 1.6, 3.0}) {
+            double sum = 0;
+            const int n = 20000;
+            for (int i = 0; i < n; ++i) {
+                const double phi = 2 * pi * (i + 0.5) / n;
+                sum += max(cos(theta) * cos(omega) + sin(theta) * sin(omega) * cos(phi), 0.0);
+            }
+            EXPECT_NEAR(circle_of_clamped_cosine(cos(theta), cos(omega)), sum / n, 1e-7) << theta << ' ' << omega;
+        }
+}
+
+TEST(Subsurface, PreintegratedFormsKeepTheSphereMeanAndTheFlatLimit) {
+    EXPECT_NEAR(preintegrated_ring(0.37, 0.0, 1.0), 0.37, 1e-15);
+    EXPECT_NEAR(preintegrated_sphere(0.37, 0.0), 0.37, 1e-9);
+    for (const double k : {0.01, 0.2, 1.0, 30.0}) {
+        double sum = 0;
+        const int n = 400;
+        for (int i = 0; i < n; ++i) sum += preintegrated_sphere(2 * (i + 0.5) / n - 1, k, 64);
+        EXPECT_NEAR(sum / n, 0.25, 1e-5) << k;  // the midpoint rule in n.l: step^2 / 24 of a kink's slope
+    }
+    // The last row is the profile 1/r: steps of equal chord.
+    double limit = 0;
+    for (int i = 0; i < 32; ++i) {
+        const double chord = 2 * (i + 0.5) / 32;
+        limit += circle_of_clamped_cosine(2.0 * 3 / 15 - 1, 1 - chord * chord / 2) / 32;
+    }
+    EXPECT_NEAR(preintegrated_texel<double>(3, 15, 16, 16), limit, 1e-5);
+    const Vec2<double> uv = preintegrated_uv(1.0, 1.0, Vec2<double>{16, 32});
+    EXPECT_NEAR(uv.x, 15.5 / 16, 1e-15);
+    EXPECT_NEAR(uv.y, 0.5, 1e-15);
+}
+
+TEST(Subsurface, LineSpreadIntegratesToOneAndIsTheProfileAlongALine) {
+    const double s = 1.7;
+    const auto root = [&](double t) { return 2 * t * 2 * burley_line_spread(t * t, s); };
+    EXPECT_NEAR(integral_to_infinity(root), 1, 1e-7);
+    for (const double x : {0.05, 0.8, 4.0}) {
+        const auto along = [&](double y) { return 2 * burley_profile(std::sqrt(x * x + y * y), splat3(s)).x; };
+        EXPECT_NEAR(integral_to_infinity(along), burley_line_spread(x, s), 1e-7 * burley_line_spread(x, s)) << x;
+    }
+    // Beyond 9/s lies 1.5 % of the light.
+    const auto beyond = [&](double y) { return 2 * burley_line_spread(9 / s + y, s); };
+    EXPECT_NEAR(integral_to_infinity(beyond), 0.015, 5e-4);
+}
+
+TEST(Subsurface, SeparableKernelsSumToOneAndAreEven) {
+    for (const int taps : {7, 17, 25}) {
+        for (const auto& kernel : {separable_kernel_skin<double>({1, 0.37, 0.3}, {0.48, 0.41, 0.28}, taps),
+                                   separable_kernel_burley<double>({1, 2, 4}, 9.0, taps)}) {
+            Vec3<double> sum{};
+            for (std::size_t i = 0; i < kernel.size(); ++i) {
+                sum = sum + kernel[i].xyz();
+                EXPECT_NEAR(kernel[i].y, kernel[kernel.size() - 1 - i].y, 1e-15);
+                EXPECT_NEAR(kernel[i].w, -kernel[kernel.size() - 1 - i].w, 1e-15);
+            }
+            EXPECT_NEAR(sum.x, 1, 1e-14);
+            EXPECT_NEAR(sum.z, 1, 1e-14);
+        }
+    }
+}
+
+TEST(SubsurfaceWalk, HalfSpaceReflectsWhatChandrasekharSays) {
+    for (const double albedo : {0.5, 0.9, 0.99}) {
+        const double exact = half_space_albedo(albedo);
+        EXPECT_NEAR(half_space_albedo(albedo, 50), exact, 1e-4);
+        const Estimate walk = subsurface_half_space({albedo, 1}, 0, 40000, 1, [](const Vec3<double>&) { return 1.0; });
+        std::printf("albedo %.2f: exact %.6f walk %.6f +- %.6f\n", albedo, exact, walk.mean, walk.standard_error);
+        EXPECT_NEAR(walk.mean, exact, 4.5 * walk.standard_error) << albedo;
+        EXPECT_LT(walk.standard_error, 3e-3);
+    }
+}
+
+TEST(SubsurfaceWalk, NothingIsLostWithoutAbsorption) {
+    const auto one = [](const Vec3<double>&) { return 1.0; };
+    EXPECT_NEAR(subsurface_slab({1, 1}, 3, 2000, 2, one).mean, 1, 1e-12);
+    EXPECT_NEAR(subsurface_sphere({1, 0.2}, 1, {0, 0, 1}, 2000, 3, one).mean, 1, 1e-12);
+}
+
+TEST(SubsurfaceWalk, EmptySlabTransmitsTheExponentialIntegral) {
+    // With albedo 0 what crosses is 2 E3(thickness), E3(1) = 0.1096919671.
+    const auto back = [](const Vec3<double>& exit) { return exit.z < -0.5 ? 1.0 : 0.0; };
+    const Estimate walk = subsurface_slab({0, 1}, 1, 40000, 4, back);
+    EXPECT_NEAR(walk.mean, 2 * 0.1096919671, 4.5 * walk.standard_error);
+}
+
+TEST(SubsurfaceWalk, InversionOfTheAlbedoHoldsForDiffuseLight) {
+    for (const double albedo : {0.2, 0.5, 0.8}) {
+        const double single = single_scattering_albedo(splat3(albedo)).x;
+        std::printf("albedo %.2f: single %.6f gives %.6f\n", albedo, single, half_space_albedo(single));
+        EXPECT_NEAR(half_space_albedo(single), albedo, 0.01);
+    }
+}
+
+}  // namespace
+}  // namespace kiln::reference

@@ -1,0 +1,70 @@
+#pragma once
+// Diffuse light on a curved surface integrated over its scattering, as uber/lib/subsurface_preintegrated.glsl names it:
+// the same sums with the same number of steps, in angles. With many steps they are the integrals themselves.
+
+#include "uber/reference/subsurface.h"
+
+namespace kiln::reference {
+
+template <class T>
+T preintegrated_ring(const T& n_dot_l, const T& curvature, const T& variance, int steps = 32) {
+    const T theta = acos(clamp(n_dot_l, T(-1), T(1)));
+    const T sigma = sqrt(variance) * curvature;
+    const T reach = value(T(2) * sigma) < 1 ? T(2) * asin(T(2) * sigma) : T(pi);
+    T sum = T(0), weights = T(0);
+    for (int i = 0; i < steps; ++i) {
+        const T x = reach * (T(2 * i + 1) / T(steps) - T(1));
+        const T chord_over_sigma = value(sigma) > 0 ? T(2) * sin(x / T(2)) / sigma : T(0);
+        const T weight = exp(-chord_over_sigma * chord_over_sigma / T(2));
+        sum = sum + weight * max(cos(theta + x), T(0));
+        weights = weights + weight;
+    }
+    return sum / weights;
+}
+
+template <class T>
+T burley_gaussian_variance(const T& s) {
+    return T(7) / (s * s);
+}
+
+// 1/pi of the integral of a + b cos(phi) from 0 to where it meets 0.
+template <class T>
+T circle_of_clamped_cosine(const T& cos_theta, const T& cos_omega) {
+    const T a = cos_theta * cos_omega;
+    const T b = sqrt(max(T(1) - cos_theta * cos_theta, T(0))) * sqrt(max(T(1) - cos_omega * cos_omega, T(0)));
+    if (value(b) <= std::fabs(value(a))) return max(a, T(0));
+    const T phi = acos(-a / b);
+    return (a * phi + b * sin(phi)) / T(pi);
+}
+
+template <class T>
+T preintegrated_sphere(const T& n_dot_l, const T& curvature_over_s, int steps = 32) {
+    const T k = clamp(curvature_over_s, T(1e-6), T(1e6));
+    const T whole = burley_cumulative(T(2) / k, T(1));
+    T sum = T(0);
+    for (int i = 0; i < steps; ++i) {
+        const T t = min(burley_radius(whole * (T(i) + T(0.5)) / T(steps), T(1)) * k, T(2));
+        sum = sum + circle_of_clamped_cosine(clamp(n_dot_l, T(-1), T(1)), T(1) - t * t / T(2));
+    }
+    return sum / T(steps);
+}
+
+template <class T>
+Vec2<T> preintegrated_uv(const T& n_dot_l, const T& curvature_over_s, const Vec2<T>& size) {
+    const Vec2<T> t{(T(1) + clamp(n_dot_l, T(-1), T(1))) / T(2), curvature_over_s / (T(1) + curvature_over_s)};
+    return {(t.x * (size.x - T(1)) + T(0.5)) / size.x, (t.y * (size.y - T(1)) + T(0.5)) / size.y};
+}
+
+template <class T>
+T preintegrated_texel(int x, int y, int width, int height, int steps = 32) {
+    const T row = T(y) / T(height - 1);
+    return preintegrated_sphere(T(2) * T(x) / T(width - 1) - T(1), row / max(T(1) - row, T(1e-6)), steps);
+}
+
+// table: (uv) -> T, filtered linearly.
+template <class T, class F>
+Vec3<T> preintegrated_lookup(F table, const Vec2<T>& size, const T& n_dot_l, const T& curvature, const Vec3<T>& s) {
+    return map(s, [&](const T& shape) { return table(preintegrated_uv(n_dot_l, curvature / shape, size)); });
+}
+
+}  // namespace kiln::reference
