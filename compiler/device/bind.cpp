@@ -13,9 +13,52 @@ namespace {
 bool is_buffer(ResourceKind k) { return k == ResourceKind::uniform_block || k == ResourceKind::storage_block; }
 bool is_texels(ResourceKind k) { return k == ResourceKind::uniform_texels || k == ResourceKind::storage_texels; }
 
-VkSampler sampler_for(const Samplers& samplers, const Binding& b) {
-    if (b.compare) return samplers.compare;
-    return b.base == BaseType::float32 ? samplers.smooth : samplers.exact;
+SamplerState usual_state(const Binding& b) {
+    if (b.compare) return {Filter::linear, MipFilter::linear, Wrap::clamp, Comparison::less_or_equal};
+    if (b.base == BaseType::float32) return {};
+    return {Filter::nearest, MipFilter::nearest, Wrap::clamp, Comparison::off};
+}
+
+VkSampler sampler_for(Context& context, Samplers& samplers, const Binding& b) {
+    const SamplerState state = b.sampler.value_or(usual_state(b));
+    if ((state.compare != Comparison::off) != b.compare) {
+        context.failure = "the shader " + std::string(b.compare ? "compares" : "does not compare") + " through '" + b.name +
+                          "', and the sampler given for it " + (b.compare ? "does not" : "does");
+        return VK_NULL_HANDLE;
+    }
+    return samplers.get(state, b.base != BaseType::float32);
+}
+
+VkSamplerAddressMode address_mode(Wrap wrap) {
+    switch (wrap) {
+        case Wrap::mirror:
+            return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
+        case Wrap::clamp:
+            return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+        case Wrap::border_black:
+        case Wrap::border_white:
+            return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
+        default:
+            return VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    }
+}
+
+VkBorderColor border_colour(Wrap wrap, bool integer) {
+    if (wrap == Wrap::border_white) return integer ? VK_BORDER_COLOR_INT_OPAQUE_WHITE : VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE;
+    return integer ? VK_BORDER_COLOR_INT_OPAQUE_BLACK : VK_BORDER_COLOR_FLOAT_OPAQUE_BLACK;
+}
+
+VkCompareOp compare_op(Comparison compare) {
+    switch (compare) {
+        case Comparison::less:
+            return VK_COMPARE_OP_LESS;
+        case Comparison::greater_or_equal:
+            return VK_COMPARE_OP_GREATER_OR_EQUAL;
+        case Comparison::greater:
+            return VK_COMPARE_OP_GREATER;
+        default:
+            return VK_COMPARE_OP_LESS_OR_EQUAL;
+    }
 }
 
 void make_pool(Context& context, const Inputs& inputs, Bound& out, uint32_t sets) {
@@ -33,31 +76,28 @@ void make_pool(Context& context, const Inputs& inputs, Bound& out, uint32_t sets
 
 }  // namespace
 
-Samplers make_samplers(Context& context) {
-    Samplers out;
+VkSampler Samplers::get(const SamplerState& state, bool integer) {
+    const auto known = made_.find({state, integer});
+    if (known != made_.end()) return known->second;
     VkSamplerCreateInfo create{};
     create.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
-    create.magFilter = create.minFilter = VK_FILTER_LINEAR;
-    create.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
-    create.maxLod = VK_LOD_CLAMP_NONE;
-    context.ok(vkCreateSampler(context.device, &create, nullptr, &out.smooth), "vkCreateSampler");
-    create.addressModeU = create.addressModeV = create.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-    create.compareEnable = VK_TRUE;
-    create.compareOp = VK_COMPARE_OP_LESS_OR_EQUAL;
-    context.ok(vkCreateSampler(context.device, &create, nullptr, &out.compare), "vkCreateSampler");
-    create.compareEnable = VK_FALSE;
-    create.magFilter = create.minFilter = VK_FILTER_NEAREST;
-    create.mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST;
-    context.ok(vkCreateSampler(context.device, &create, nullptr, &out.exact), "vkCreateSampler");
-    return out;
+    create.magFilter = create.minFilter = state.filter == Filter::linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+    create.mipmapMode = state.mips == MipFilter::linear ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
+    create.maxLod = state.mips == MipFilter::none ? 0.0f : VK_LOD_CLAMP_NONE;
+    create.addressModeU = create.addressModeV = create.addressModeW = address_mode(state.wrap);
+    create.borderColor = border_colour(state.wrap, integer);
+    create.compareEnable = state.compare != Comparison::off ? VK_TRUE : VK_FALSE;
+    create.compareOp = compare_op(state.compare);
+    VkSampler sampler = VK_NULL_HANDLE;
+    if (!context_.ok(vkCreateSampler(context_.device, &create, nullptr, &sampler), "vkCreateSampler")) return VK_NULL_HANDLE;
+    return made_[{state, integer}] = sampler;
 }
 
-void destroy(Context& context, Samplers& s) {
-    for (const VkSampler sampler : {s.smooth, s.exact, s.compare}) vkDestroySampler(context.device, sampler, nullptr);
-    s = {};
+Samplers::~Samplers() {
+    for (const auto& [state, sampler] : made_) vkDestroySampler(context_.device, sampler, nullptr);
 }
 
-void bind_inputs(Context& context, Arena& arena, Images& images, const Samplers& samplers, VkCommandBuffer commands,
+void bind_inputs(Context& context, Arena& arena, Images& images, Samplers& samplers, VkCommandBuffer commands,
                  const PipelineRequest& request, const Pipeline& pipeline, const Inputs& inputs, Bound& out) {
     const uint32_t count = static_cast<uint32_t>(pipeline.sets.size());
     if (count == 0) return;
@@ -105,8 +145,10 @@ void bind_inputs(Context& context, Arena& arena, Images& images, const Samplers&
                         VkDescriptorBufferInfo{written.buffer.buffer, written.buffer.offset, written.buffer.size});
                 }
             } else if (b.kind == ResourceKind::separate_sampler) {
-                w.pImageInfo = &image_infos.emplace_back(
-                    VkDescriptorImageInfo{sampler_for(samplers, b), VK_NULL_HANDLE, VK_IMAGE_LAYOUT_UNDEFINED});
+                const VkSampler sampler = sampler_for(context, samplers, b);
+                if (sampler == VK_NULL_HANDLE) return;
+                w.pImageInfo =
+                    &image_infos.emplace_back(VkDescriptorImageInfo{sampler, VK_NULL_HANDLE, VK_IMAGE_LAYOUT_UNDEFINED});
             } else {
                 const std::shared_ptr<const ImageData>& data = b.images[i];
                 Image* image = b.kind == ResourceKind::storage_image
@@ -114,7 +156,9 @@ void bind_inputs(Context& context, Arena& arena, Images& images, const Samplers&
                                    : images.sampled(commands, data);
                 if (image == nullptr) return;
                 written.image = image;
-                const VkSampler sampler = b.kind == ResourceKind::combined_image ? sampler_for(samplers, b) : VK_NULL_HANDLE;
+                const bool combined = b.kind == ResourceKind::combined_image;
+                const VkSampler sampler = combined ? sampler_for(context, samplers, b) : VK_NULL_HANDLE;
+                if (combined && sampler == VK_NULL_HANDLE) return;
                 w.pImageInfo = &image_infos.emplace_back(VkDescriptorImageInfo{sampler, image->view, VK_IMAGE_LAYOUT_GENERAL});
                 if (b.kind == ResourceKind::input_attachment)
                     for (const StageCode& s : request.stages) {

@@ -5,12 +5,19 @@
 
 namespace kiln {
 
-// Samplers that live as long as the device: smooth, exact (for integers), comparing.
-struct Samplers {
-    VkSampler smooth = VK_NULL_HANDLE, exact = VK_NULL_HANDLE, compare = VK_NULL_HANDLE;
+// Samplers that live as long as the device, made when first asked for.
+class Samplers {
+public:
+    explicit Samplers(Context& context) : context_(context) {}
+    Samplers(const Samplers&) = delete;
+    Samplers& operator=(const Samplers&) = delete;
+    ~Samplers();
+    VkSampler get(const SamplerState& state, bool integer);  // null: context.failure says why
+
+private:
+    Context& context_;
+    std::map<std::pair<SamplerState, bool>, VkSampler> made_;
 };
-Samplers make_samplers(Context& context);
-void destroy(Context& context, Samplers& samplers);
 
 // What was bound, for reading back and for clean-up.
 struct Bound {
@@ -28,7 +35,7 @@ struct Bound {
 };
 
 // Records uploads into `commands`. Stops at the first failure (context.failure).
-void bind_inputs(Context& context, Arena& arena, Images& images, const Samplers& samplers, VkCommandBuffer commands,
+void bind_inputs(Context& context, Arena& arena, Images& images, Samplers& samplers, VkCommandBuffer commands,
                  const PipelineRequest& request, const Pipeline& pipeline, const Inputs& inputs, Bound& out);
 void destroy(Context& context, Bound& bound);
 

@@ -52,26 +52,30 @@ uint32_t Context::memory_type(uint32_t bits, VkMemoryPropertyFlags wanted) const
     return ~0u;
 }
 
-Result<std::unique_ptr<Context>> Context::open() {
+Result<std::unique_ptr<Context>> Context::open(bool layer) {
     auto context = std::make_unique<Context>();
-    KILN_TRY(context->open_instance());
+    KILN_TRY(context->open_instance(layer));
     KILN_TRY(context->open_device());
     return context;
 }
 
-Status Context::open_instance() {
-    uint32_t n = 0;
-    vkEnumerateInstanceLayerProperties(&n, nullptr);
-    std::vector<VkLayerProperties> layers(n);
-    vkEnumerateInstanceLayerProperties(&n, layers.data());
-    const auto layer = std::find_if(layers.begin(), layers.end(),
-                                    [](const VkLayerProperties& l) { return std::strcmp(l.layerName, layer_name) == 0; });
-    if (layer == layers.end())
-        return environment_error(std::string(layer_name) +
-                                 " is not installed, and nothing is validated without it; install the package "
-                                 "vulkan-validationlayers");
-    info.layers = std::string(layer_name) + " " + version_text(layer->specVersion) + " (implementation " +
-                  std::to_string(layer->implementationVersion) + ")";
+Status Context::open_instance(bool layer) {
+    if (layer) {
+        uint32_t n = 0;
+        vkEnumerateInstanceLayerProperties(&n, nullptr);
+        std::vector<VkLayerProperties> layers(n);
+        vkEnumerateInstanceLayerProperties(&n, layers.data());
+        const auto found = std::find_if(layers.begin(), layers.end(),
+                                        [](const VkLayerProperties& l) { return std::strcmp(l.layerName, layer_name) == 0; });
+        if (found == layers.end())
+            return environment_error(std::string(layer_name) +
+                                     " is not installed, and nothing is validated without it; install the package "
+                                     "vulkan-validationlayers");
+        info.layers = std::string(layer_name) + " " + version_text(found->specVersion) + " (implementation " +
+                      std::to_string(found->implementationVersion) + ")";
+    } else {
+        info.layers = "none";
+    }
 
     VkApplicationInfo application{};
     application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
@@ -87,14 +91,16 @@ Status Context::open_instance() {
     VkInstanceCreateInfo create{};
     create.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
     create.pApplicationInfo = &application;
-    create.enabledLayerCount = 1;
-    create.ppEnabledLayerNames = &layer_name;
-    create.enabledExtensionCount = 1;
-    create.ppEnabledExtensionNames = &extension;
+    if (layer) {
+        create.enabledLayerCount = create.enabledExtensionCount = 1;
+        create.ppEnabledLayerNames = &layer_name;
+        create.ppEnabledExtensionNames = &extension;
+    }
     if (!ok(vkCreateInstance(&create, nullptr, &instance), "vkCreateInstance")) {
         instance = VK_NULL_HANDLE;
         return environment_error(failure + ": no usable Vulkan driver");
     }
+    if (!layer) return {};
     const auto make = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
         reinterpret_cast<void*>(vkGetInstanceProcAddr(instance, "vkCreateDebugUtilsMessengerEXT")));
     if (make == nullptr || !ok(make(instance, &listen, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT"))
@@ -131,6 +137,8 @@ Status Context::open_device() {
     const VkQueueFlags both = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
     while (family < families && (kinds[family].queueFlags & both) != both) ++family;
     if (family == families) return environment_error("the device '" + info.name + "' has no queue for graphics and compute");
+
+    timestamp_bits = kinds[family].timestampValidBits;
 
     // Every feature that the device has is switched on, so that a module is refused only where the device cannot run it.
     const std::vector<std::string> have = device_extensions(physical);

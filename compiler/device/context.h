@@ -1,5 +1,6 @@
 #pragma once
-// One Vulkan instance, device and queue with the validation layer on, and what the layer said since it was last asked.
+// One Vulkan instance, device and queue, with the validation layer on unless told otherwise, and what the layer said since it was
+// last asked.
 // Internal to compiler/device.
 
 #include <vulkan/vulkan.h>
@@ -19,8 +20,8 @@ struct LayerMessage {
 
 class Context {
 public:
-    // The first device of the driver that apply_driver() chose. Without the validation layer this is an error.
-    static Result<std::unique_ptr<Context>> open();
+    // The first device of the driver that apply_driver() chose. Where the layer is asked for and not installed, an error.
+    static Result<std::unique_ptr<Context>> open(bool layer);
     Context() = default;
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
@@ -31,6 +32,7 @@ public:
     VkDevice device = VK_NULL_HANDLE;
     VkQueue queue = VK_NULL_HANDLE;
     uint32_t family = 0;
+    uint32_t timestamp_bits = 0;  // of the queue; 0: it has no timestamps
     VkPhysicalDeviceProperties properties{};
     VkPhysicalDeviceMemoryProperties memory{};
     VkPhysicalDeviceFeatures features{};  // all that the device has are on
@@ -41,6 +43,7 @@ public:
     bool ok(VkResult result, const char* call);
     bool failed() const { return !failure.empty(); }
     std::string failure;
+    std::string lacking;                 // what this device cannot do, found while images were made
     std::vector<LayerMessage> messages;  // severity error, at most a few, since last cleared
 
     // Index of a memory type among `bits` with all `wanted` properties; ~0u when there is none.
@@ -48,7 +51,7 @@ public:
 
 private:
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
-    Status open_instance();
+    Status open_instance(bool layer);
     Status open_device();
 };
 

@@ -70,18 +70,25 @@ Result<std::string> find_driver(const DriverChoice& choice) {
         "driver's manifest in KILN_ICD");
 }
 
-void apply_driver(const std::string& icd, const DriverChoice& choice) {
+Status apply_driver(const std::string& icd, const DriverChoice& choice) {
     setenv("VK_DRIVER_FILES", icd.c_str(), 1);
     setenv("VK_ICD_FILENAMES", icd.c_str(), 1);  // the same for loaders before 1.3.207
     unsetenv("VK_ADD_DRIVER_FILES");
     setenv("NODEVICE_SELECT", "1", 1);  // Mesa's implicit layer that reorders devices
-    setenv("GALLIVM_PERF", "no_aos_sampling,nopt", 0);
+    setenv("GALLIVM_PERF", choice.optimise ? "no_aos_sampling" : "no_aos_sampling,nopt", 0);
     setenv("LP_NUM_THREADS", "0", 0);
     if (!choice.cache_dir.empty()) setenv("MESA_SHADER_CACHE_DIR", choice.cache_dir.c_str(), 1);
+    if (!choice.shader_cache) setenv("MESA_SHADER_CACHE_DISABLE", "1", 1);
+    if (choice.optimise && from_environment("GALLIVM_PERF").find("nopt") != std::string::npos)
+        return environment_error("GALLIVM_PERF is '" + from_environment("GALLIVM_PERF") +
+                                 "', by the user or by a device opened before: times of unoptimised code mean nothing");
+    return {};
 }
 
 std::string driver_settings() {
-    return "GALLIVM_PERF=" + from_environment("GALLIVM_PERF") + " LP_NUM_THREADS=" + from_environment("LP_NUM_THREADS");
+    const std::string no_cache = from_environment("MESA_SHADER_CACHE_DISABLE");
+    return "GALLIVM_PERF=" + from_environment("GALLIVM_PERF") + " LP_NUM_THREADS=" + from_environment("LP_NUM_THREADS") +
+           (no_cache.empty() ? "" : " MESA_SHADER_CACHE_DISABLE=" + no_cache);
 }
 
 }  // namespace kiln

@@ -52,6 +52,39 @@ constexpr Format formats[] = {
     {VK_FORMAT_R8_UINT, Coding::uint, 1, 8},
 };
 
+// Indexed by TexelFormat.
+constexpr VkFormat encoded_formats[] = {
+    VK_FORMAT_UNDEFINED,
+    VK_FORMAT_R8G8B8A8_UNORM,
+    VK_FORMAT_R8G8B8A8_SRGB,
+    VK_FORMAT_R8_UNORM,
+    VK_FORMAT_R8G8_UNORM,
+    VK_FORMAT_R16_UNORM,
+    VK_FORMAT_R16G16_UNORM,
+    VK_FORMAT_R16G16B16A16_UNORM,
+    VK_FORMAT_R16_SFLOAT,
+    VK_FORMAT_R16G16_SFLOAT,
+    VK_FORMAT_R16G16B16A16_SFLOAT,
+    VK_FORMAT_R32_SFLOAT,
+    VK_FORMAT_R32G32_SFLOAT,
+    VK_FORMAT_R32G32B32A32_SFLOAT,
+    VK_FORMAT_A2B10G10R10_UNORM_PACK32,
+    VK_FORMAT_B10G11R11_UFLOAT_PACK32,
+    VK_FORMAT_E5B9G9R9_UFLOAT_PACK32,
+    VK_FORMAT_BC1_RGB_UNORM_BLOCK,
+    VK_FORMAT_BC1_RGB_SRGB_BLOCK,
+    VK_FORMAT_BC3_UNORM_BLOCK,
+    VK_FORMAT_BC3_SRGB_BLOCK,
+    VK_FORMAT_BC4_UNORM_BLOCK,
+    VK_FORMAT_BC5_UNORM_BLOCK,
+    VK_FORMAT_BC6H_UFLOAT_BLOCK,
+    VK_FORMAT_BC7_UNORM_BLOCK,
+    VK_FORMAT_BC7_SRGB_BLOCK,
+    VK_FORMAT_D16_UNORM,
+    VK_FORMAT_D32_SFLOAT,
+};
+static_assert(std::size(encoded_formats) == static_cast<size_t>(TexelFormat::d32_float) + 1);
+
 float as_float(uint32_t bits) {
     float v;
     std::memcpy(&v, &bits, 4);
@@ -162,6 +195,15 @@ Format format_of(uint32_t spirv_format, BaseType base) {
 }
 
 Format depth_format() { return {VK_FORMAT_D32_SFLOAT, Coding::depth, 1, 32}; }
+
+Format format_of(const ImageData& image) {
+    if (image.format == TexelFormat::standard) return image.depth ? depth_format() : format_of(0, image.base);
+    Format out;
+    const size_t i = static_cast<size_t>(image.format);
+    out.vk = i < std::size(encoded_formats) ? encoded_formats[i] : VK_FORMAT_UNDEFINED;
+    if (image.format == TexelFormat::d16_unorm || image.format == TexelFormat::d32_float) out.coding = Coding::depth;
+    return out;
+}
 
 Bytes pack_texels(const Format& f, ByteView words) {
     if (f.coding == Coding::depth || (f.bits == 32 && f.components == 4 && !is_packed(f))) return {words.begin(), words.end()};

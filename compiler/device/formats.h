@@ -22,6 +22,8 @@ struct Format {
 // The format of a SPIR-V ImageFormat number; for 0 (unknown), four 32-bit components of `base`.
 Format format_of(uint32_t spirv_format, BaseType base);
 Format depth_format();
+// What an image that is sampled is stored as; for encoded formats, `vk` and whether it is depth are all that is told.
+Format format_of(const ImageData& image);
 
 // `words`: four 32-bit components a texel (one for depth), in the shader's type.
 Bytes pack_texels(const Format& format, ByteView words);

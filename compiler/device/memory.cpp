@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "compiler/validate/texels.h"
+
 namespace kiln {
 
 namespace {
@@ -152,24 +154,41 @@ void Images::upload(VkCommandBuffer commands, Image& image, const ImageData& dat
         image_barrier(commands, image, VK_IMAGE_LAYOUT_GENERAL);
         return;
     }
-    const Piece staged = arena_.take(pack_texels(image.format, data.texels));
-    if (staged.data == nullptr) return;
-    std::vector<VkBufferImageCopy> copies;
-    VkDeviceSize at = staged.offset;
+    if (data.texels.size() != image_bytes(data)) {
+        context_.failure = "an image of " + std::string(name_of(data.format)) + " texels has " +
+                           std::to_string(data.texels.size()) + " bytes, and its size asks for " +
+                           std::to_string(image_bytes(data));
+        return;
+    }
+    size_t at = 0;
     for (uint32_t mip = 0; mip < image.mips; ++mip) {
+        const ByteView texels = ByteView(data.texels).subspan(at, mip_bytes(data, mip));
+        at += texels.size();
+        // Each mip is staged on its own: an offset must be a multiple of 4 and of a block, which tight packing does not give.
+        const Piece staged =
+            data.format == TexelFormat::standard ? arena_.take(pack_texels(image.format, texels)) : arena_.take(texels);
+        if (staged.data == nullptr) return;
         VkBufferImageCopy copy{};
-        copy.bufferOffset = at;
+        copy.bufferOffset = staged.offset;
         copy.imageSubresource = {image.aspect, mip, 0, image.layers};
         copy.imageExtent = {std::max(1u, image.width >> mip), std::max(1u, image.height >> mip),
                             std::max(1u, image.slices >> mip)};
-        at += VkDeviceSize{copy.imageExtent.width} * copy.imageExtent.height * copy.imageExtent.depth * image.layers *
-              image.format.texel_bytes();
-        if (at - staged.offset > staged.size) break;
-        copies.push_back(copy);
+        vkCmdCopyBufferToImage(commands, staged.buffer, image.image, VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
     }
-    vkCmdCopyBufferToImage(commands, staged.buffer, image.image, VK_IMAGE_LAYOUT_GENERAL, static_cast<uint32_t>(copies.size()),
-                           copies.data());
     image_barrier(commands, image, VK_IMAGE_LAYOUT_GENERAL);
+}
+
+bool Images::can_sample(const ImageData& data, const Format& format) {
+    if (data.format != TexelFormat::standard && (data.multisampled || data.dim == ImageDim::subpass)) {
+        context_.failure = std::string("multisampled images and input attachments are ") + name_of(TexelFormat::standard) +
+                           ", not " + name_of(data.format);
+        return false;
+    }
+    VkFormatProperties have{};
+    vkGetPhysicalDeviceFormatProperties(context_.physical, format.vk, &have);
+    if ((have.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT) == 0)
+        context_.lacking = std::string("this device does not sample ") + name_of(data.format);
+    return context_.lacking.empty();
 }
 
 Image* Images::sampled(VkCommandBuffer commands, const std::shared_ptr<const ImageData>& data) {
@@ -181,26 +200,35 @@ Image* Images::sampled(VkCommandBuffer commands, const std::shared_ptr<const Ima
             usage = VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
         else if (data->multisampled)
             usage |= data->depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
-        image = make(*data, data->depth ? depth_format() : format_of(0, data->base), usage);
+        const Format format = format_of(*data);
+        if (!can_sample(*data, format)) return nullptr;
+        image = make(*data, format, usage);
         if (image.view == VK_NULL_HANDLE) return nullptr;
+        sampled_bytes_ += data->texels.size();
         upload(commands, image, *data);
     }
     return &image;
 }
 
 Image* Images::storage(VkCommandBuffer commands, const ImageData& data, const Format& format, uint32_t ordinal) {
-    Image& image = storage_[{format.vk, data.dim, data.arrayed, data.multisampled ? 4u : 1u, ordinal}];
+    if (data.format != TexelFormat::standard) {
+        context_.failure = std::string("texels of a storage image are given as standard, not as ") + name_of(data.format);
+        return nullptr;
+    }
+    const Shape shape{data.width, data.height, data.slices, data.layers, data.mips};
+    Image& image = storage_[{format.vk, data.dim, data.arrayed, data.multisampled ? 4u : 1u, shape, ordinal}];
     if (image.view == VK_NULL_HANDLE) image = make(data, format, VK_IMAGE_USAGE_STORAGE_BIT);
     if (image.view == VK_NULL_HANDLE) return nullptr;
     upload(commands, image, data);
     return &image;
 }
 
-Image* Images::attachment(const Format& format, uint32_t size, uint32_t ordinal) {
-    Image& image = attachments_[{format.vk, size, ordinal}];
+Image* Images::attachment(const Format& format, uint32_t width, uint32_t height, uint32_t ordinal) {
+    Image& image = attachments_[{format.vk, width, height, ordinal}];
     if (image.view == VK_NULL_HANDLE) {
         ImageData like;
-        like.width = like.height = size;
+        like.width = width;
+        like.height = height;
         image = make(
             like, format,
             format.coding == Coding::depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
@@ -220,6 +248,7 @@ void Images::clear() {
     for (auto& [key, image] : storage_) destroy(image);
     for (auto& [key, image] : attachments_) destroy(image);
     sampled_.clear();
+    sampled_bytes_ = 0;
     storage_.clear();
     attachments_.clear();
 }

@@ -61,11 +61,12 @@ public:
     Image* sampled(VkCommandBuffer commands, const std::shared_ptr<const ImageData>& data);
     // Filled anew in every run. `ordinal` tells images of one run apart.
     Image* storage(VkCommandBuffer commands, const ImageData& data, const Format& format, uint32_t ordinal);
-    Image* attachment(const Format& format, uint32_t size, uint32_t ordinal);
-    bool crowded() const { return sampled_.size() > 512; }
+    Image* attachment(const Format& format, uint32_t width, uint32_t height, uint32_t ordinal);
+    bool crowded() const { return sampled_.size() > 512 || storage_.size() > 64 || sampled_bytes_ > (size_t{256} << 20); }
     void clear();
 
 private:
+    bool can_sample(const ImageData& data, const Format& format);
     Image make(const ImageData& like, const Format& format, VkImageUsageFlags usage);
     void upload(VkCommandBuffer commands, Image& image, const ImageData& data);
     void destroy(Image& image);
@@ -73,8 +74,10 @@ private:
     Context& context_;
     Arena& arena_;
     std::map<const ImageData*, std::pair<std::shared_ptr<const ImageData>, Image>> sampled_;
-    std::map<std::tuple<VkFormat, ImageDim, bool, uint32_t, uint32_t>, Image> storage_;
-    std::map<std::tuple<VkFormat, uint32_t, uint32_t>, Image> attachments_;
+    size_t sampled_bytes_ = 0;              // as they were given
+    using Shape = std::array<uint32_t, 5>;  // width, height, slices, layers, mips
+    std::map<std::tuple<VkFormat, ImageDim, bool, uint32_t, Shape, uint32_t>, Image> storage_;
+    std::map<std::tuple<VkFormat, uint32_t, uint32_t, uint32_t>, Image> attachments_;
 };
 
 // A full barrier on one image: correctness before speed, on images of a few kilobytes.

@@ -111,10 +111,8 @@ void find_input_images(const PipelineRequest& request, Pipeline& out) {
     std::sort(out.inputs.begin(), out.inputs.end(), [](const InputImage& a, const InputImage& b) { return a.index < b.index; });
 }
 
-void make_pass(Context& context, const PipelineRequest& request, Pipeline& out) {
-    for (const StageCode& s : request.stages)
-        if (s.stage == Stage::fragment) find_outputs(s.reflection, context.properties.limits.maxColorAttachments, out);
-    find_input_images(request, out);
+VkRenderPass make_pass(Context& context, const Pipeline& out, VkAttachmentLoadOp own) {
+    const VkImageLayout before = own == VK_ATTACHMENT_LOAD_OP_CLEAR ? VK_IMAGE_LAYOUT_UNDEFINED : VK_IMAGE_LAYOUT_GENERAL;
     std::vector<VkAttachmentDescription> attachments;
     std::vector<VkAttachmentReference> colours, inputs;
     const auto add = [&](VkFormat format, VkAttachmentLoadOp load, VkImageLayout from,
@@ -124,12 +122,10 @@ void make_pass(Context& context, const PipelineRequest& request, Pipeline& out) 
         return static_cast<uint32_t>(attachments.size() - 1);
     };
     for (const Output& o : out.outputs)
-        colours.push_back(o.mask == 0 ? VkAttachmentReference{VK_ATTACHMENT_UNUSED, VK_IMAGE_LAYOUT_UNDEFINED}
-                                      : VkAttachmentReference{
-                                            add(output_format(o.base).vk, VK_ATTACHMENT_LOAD_OP_CLEAR, VK_IMAGE_LAYOUT_UNDEFINED),
-                                            VK_IMAGE_LAYOUT_GENERAL});
-    const VkAttachmentReference depth{add(depth_format().vk, VK_ATTACHMENT_LOAD_OP_CLEAR, VK_IMAGE_LAYOUT_UNDEFINED),
-                                      VK_IMAGE_LAYOUT_GENERAL};
+        colours.push_back(o.mask == 0
+                              ? VkAttachmentReference{VK_ATTACHMENT_UNUSED, VK_IMAGE_LAYOUT_UNDEFINED}
+                              : VkAttachmentReference{add(output_format(o.base).vk, own, before), VK_IMAGE_LAYOUT_GENERAL});
+    const VkAttachmentReference depth{add(depth_format().vk, own, before), VK_IMAGE_LAYOUT_GENERAL};
     for (const InputImage& i : out.inputs) {
         while (inputs.size() < i.index && i.index < 64) inputs.push_back({VK_ATTACHMENT_UNUSED, VK_IMAGE_LAYOUT_UNDEFINED});
         inputs.push_back(
@@ -148,7 +144,9 @@ void make_pass(Context& context, const PipelineRequest& request, Pipeline& out) 
     create.pAttachments = attachments.data();
     create.subpassCount = 1;
     create.pSubpasses = &subpass;
-    context.ok(vkCreateRenderPass(context.device, &create, nullptr, &out.pass), "vkCreateRenderPass");
+    VkRenderPass pass = VK_NULL_HANDLE;
+    context.ok(vkCreateRenderPass(context.device, &create, nullptr, &pass), "vkCreateRenderPass");
+    return pass;
 }
 
 std::vector<VkPipelineShaderStageCreateInfo> stages_of(const PipelineRequest& request, const Pipeline& pipeline) {
@@ -207,9 +205,8 @@ void make_graphics(Context& context, const PipelineRequest& request, Pipeline& o
     patches.patchControlPoints = 3;
     for (const StageCode& s : request.stages)
         if (s.stage == Stage::tess_control) patches.patchControlPoints = std::clamp(facts_of(s.words).output_vertices, 1u, 32u);
-    const float side = static_cast<float>(request.size);
-    const VkViewport viewport{0, 0, side, side, 0, 1};
-    const VkRect2D scissor{{0, 0}, {request.size, request.size}};
+    const VkViewport viewport{0, 0, static_cast<float>(request.size), static_cast<float>(request.rows()), 0, 1};
+    const VkRect2D scissor{{0, 0}, {request.size, request.rows()}};
     VkPipelineViewportStateCreateInfo view{};
     view.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
     view.viewportCount = view.scissorCount = 1;
@@ -328,12 +325,20 @@ void make_pipeline(Context& context, const PipelineRequest& request, Pipeline& o
     make_layout(context, request, out);
     if (!good(context)) return;
     if (out.compute) return make_compute(context, request, out);
-    make_pass(context, request, out);
+    for (const StageCode& s : request.stages)
+        if (s.stage == Stage::fragment) find_outputs(s.reflection, context.properties.limits.maxColorAttachments, out);
+    find_input_images(request, out);
+    out.pass = make_pass(context, out, VK_ATTACHMENT_LOAD_OP_CLEAR);
     if (good(context)) make_graphics(context, request, out);
+}
+
+void make_load_pass(Context& context, Pipeline& pipeline) {
+    pipeline.load_pass = make_pass(context, pipeline, VK_ATTACHMENT_LOAD_OP_LOAD);
 }
 
 void destroy(Context& context, Pipeline& p) {
     vkDestroyPipeline(context.device, p.pipeline, nullptr);
+    vkDestroyRenderPass(context.device, p.load_pass, nullptr);
     vkDestroyRenderPass(context.device, p.pass, nullptr);
     vkDestroyPipelineLayout(context.device, p.layout, nullptr);
     for (const VkDescriptorSetLayout s : p.sets) vkDestroyDescriptorSetLayout(context.device, s, nullptr);

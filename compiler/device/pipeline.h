@@ -22,7 +22,8 @@ struct Pipeline {
     std::vector<VkDescriptorSetLayout> sets;
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkShaderStageFlags push_stages = 0;
-    VkRenderPass pass = VK_NULL_HANDLE;
+    VkRenderPass pass = VK_NULL_HANDLE;       // clears its attachments
+    VkRenderPass load_pass = VK_NULL_HANDLE;  // keeps what they hold; only after make_load_pass()
     std::vector<VkShaderModule> modules;
     VkPipeline pipeline = VK_NULL_HANDLE;
     std::vector<Output> outputs;     // by location; a gap is an output with mask 0
@@ -33,6 +34,8 @@ struct Pipeline {
 // The pipeline objects, made in the order modules, layout, pass, pipeline; stops at the first that the layer or the driver
 // refuses, which context.messages and context.failure then tell. `unsupported` is set where the device cannot run such stages.
 void make_pipeline(Context& context, const PipelineRequest& request, Pipeline& out, std::string& unsupported);
+// A pass that the pipeline can be drawn in as well.
+void make_load_pass(Context& context, Pipeline& pipeline);
 void destroy(Context& context, Pipeline& pipeline);
 
 VkDescriptorType descriptor_type(ResourceKind kind);

@@ -35,15 +35,7 @@ Bytes texel_buffer(const Resource& r, uint64_t seed, bool either_sign) {
 }
 
 Binding make_binding(const Resource& r, const InputOptions& options) {
-    Binding b;
-    b.kind = r.kind;
-    b.set = r.set;
-    b.binding = r.binding;
-    b.name = r.name;
-    b.descriptors = descriptors_of(r);
-    b.compare = r.depth;
-    b.format = r.format;
-    b.base = r.sampled == BaseType::int32 || r.sampled == BaseType::uint32 ? r.sampled : BaseType::float32;
+    Binding b = bare_binding(r);
     const bool either_sign = options.mood == Mood::mixed;
     for (uint32_t i = 0; i < b.descriptors; ++i) {
         const uint64_t seed = mix64(seed_of(options.seed, r.name) ^ i);
@@ -66,10 +58,6 @@ Binding make_binding(const Resource& r, const InputOptions& options) {
                 break;
         }
     }
-    const bool storage =
-        r.kind == ResourceKind::storage_block || r.kind == ResourceKind::storage_image || r.kind == ResourceKind::storage_texels;
-    b.written = storage && !r.readonly;
-    if (r.kind == ResourceKind::storage_block) b.types = word_types(r);
     return b;
 }
 
@@ -173,6 +161,23 @@ std::vector<std::string> position_candidates(const std::vector<StageCode>& stage
             for (const Varying& v : s.reflection.inputs)
                 if (can_be_position(v)) out.push_back(v.name);
     return out;
+}
+
+Binding bare_binding(const Resource& r) {
+    Binding b;
+    b.kind = r.kind;
+    b.set = r.set;
+    b.binding = r.binding;
+    b.name = r.name;
+    b.descriptors = descriptors_of(r);
+    b.compare = r.depth;
+    b.format = r.format;
+    b.base = r.sampled == BaseType::int32 || r.sampled == BaseType::uint32 ? r.sampled : BaseType::float32;
+    const bool storage =
+        r.kind == ResourceKind::storage_block || r.kind == ResourceKind::storage_image || r.kind == ResourceKind::storage_texels;
+    b.written = storage && !r.readonly;
+    if (r.kind == ResourceKind::storage_block) b.types = word_types(r);
+    return b;
 }
 
 Inputs make_inputs(const std::vector<StageCode>& stages, const InputOptions& options) {

@@ -38,6 +38,9 @@ struct InputOptions {
     uint32_t vertices = 0;  // 0: the grid, or 3 for a user's vertex stage without inputs
 };
 
+// A resource's place and type, with nothing bound yet.
+Binding bare_binding(const Resource& resource);
+
 Inputs make_inputs(const std::vector<StageCode>& stages, const InputOptions& options);
 
 // Names of the vertex inputs that could be the position: float vectors of two or more components, by location.
