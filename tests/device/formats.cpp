@@ -158,6 +158,11 @@ TEST(Formats, Bc3Bc4Bc5) {
     }
     expect_texel(bc4[0], {1, 0, 0, 1}, ulps);
     EXPECT_NEAR(bc3[1][2], 1.0f, ulps);
+    Bytes green = ramp;
+    green.insert(green.end(), {0xe0, 0x03, 0, 0, 0, 0, 0, 0});
+    const auto srgb = fetch_all(image_of(TexelFormat::bc3_srgb, 4, 4, green));
+    expect_srgb_code(srgb[2][1], 125);
+    EXPECT_NEAR(srgb[2][3], 6.0f / 7, step) << "alpha stays linear";
 }
 
 // Mode 11 of BC6H: one region, end points of ten bits each. An end point x of ten bits stands for the half-float with the bits
@@ -246,7 +251,7 @@ TEST(Formats, LayersAndSlices) {
     auto layers = image_of(TexelFormat::bc1_rgb_unorm, 8, 4, {}, 2);
     layers->arrayed = true;
     layers->layers = 3;
-    for (const uint32_t red : {0, 1, 2, 3, 4, 5, 16, 17, 18}) {  // mip 0: two blocks a layer; mip 1: one
+    for (const uint32_t red : {0u, 1u, 2u, 3u, 4u, 5u, 16u, 17u, 18u}) {  // mip 0: two blocks a layer; mip 1: one
         const Bytes b = solid_bc1(red);
         layers->texels.insert(layers->texels.end(), b.begin(), b.end());
     }
