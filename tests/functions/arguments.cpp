@@ -87,6 +87,12 @@ Range Range::also(std::initializer_list<double> more) const {
     return out;
 }
 
+Range Range::with(std::initializer_list<double> more) const {
+    Range out = *this;
+    for (const double x : more) out.extremes.push_back(static_cast<float>(x));
+    return out;
+}
+
 Range linear(double low, double high) {
     return range_of(low, high, [=](double u) { return low + (high - low) * u; });
 }

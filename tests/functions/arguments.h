@@ -47,6 +47,8 @@ struct Range {
     std::vector<float> extremes;
     // Boundaries of branches and the like, each with the floats beside it that are in the range.
     Range also(std::initializer_list<double> more) const;
+    // Exactly these, in the range or not.
+    Range with(std::initializer_list<double> more) const;
     float low = 0, high = 0;
 };
 Range linear(double low, double high);       // evenly spread

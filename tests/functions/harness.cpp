@@ -63,6 +63,7 @@ void print(const Figures& f) {
         f.name.c_str(), f.absolute, f.relative, f.ulps, f.share, static_cast<unsigned long long>(f.samples),
         static_cast<unsigned long long>(f.undecided), static_cast<unsigned long long>(f.unbounded), f.rounding_ulps,
         f.implementation_ulps, f.model_relative, f.typical_bound_ulps);
+    if (f.share > 0.5) std::printf("    nearest to its bound: %s\n", f.worst.c_str());
     std::fflush(stdout);
 }
 

@@ -29,6 +29,10 @@ double slack(double scale) { return 1e-13 * scale; }
 
 }  // namespace
 
+bool Verdict::conditioned(const Expected& e, double scale) {
+    return scale >= 0x1p-126 && static_cast<double>(e.bound) < 0.01 * scale;
+}
+
 Verdict::Verdict(const FunctionTest& function, const std::vector<uint32_t>& samples)
     : function_(function), samples_(samples), components_(static_cast<uint32_t>(function.result.picks.size())) {
     const size_t n = samples.size() / function.words;
@@ -68,8 +72,9 @@ Verdict::Verdict(const FunctionTest& function, const std::vector<uint32_t>& samp
         figures_.unbounded += unbounded ? 1 : 0;
         for (uint32_t c = 0; c < components_; ++c) {
             const Expected& e = expected_[i * components_ + c];
-            figures_.rounding_ulps =
-                std::max(figures_.rounding_ulps, ulps(std::fabs(static_cast<double>(e.single) - e.exact), scale_[i]));
+            if (conditioned(e, scale_[i]))
+                figures_.rounding_ulps =
+                    std::max(figures_.rounding_ulps, ulps(std::fabs(static_cast<double>(e.single) - e.exact), scale_[i]));
             if (!unbounded) typical.push_back(ulps(static_cast<double>(e.bound), scale_[i]));
         }
         if (function.truth) {
@@ -127,9 +132,14 @@ void Verdict::judge(const std::vector<uint32_t>& results, const std::string& how
                 continue;
             }
             figures_.absolute = std::max(figures_.absolute, off);
-            figures_.relative = std::max(figures_.relative, off / std::max(scale_[i], 0x1p-126));
+            if (bound > 0 && off / bound > figures_.share) {
+                figures_.share = off / bound;
+                figures_.worst = "device" + function_.result.picks[c] + " " + text(got) + ", reference " + text(e.exact) +
+                                 ", bound " + text(bound) + " for " + describe(i);
+            }
+            if (!conditioned(e, scale_[i])) continue;
+            figures_.relative = std::max(figures_.relative, off / scale_[i]);
             figures_.ulps = std::max(figures_.ulps, ulps(off, scale_[i]));
-            if (bound > 0) figures_.share = std::max(figures_.share, off / bound);
             figures_.implementation_ulps =
                 std::max(figures_.implementation_ulps, ulps(std::fabs(got - static_cast<double>(e.single)), scale_[i]));
         }

@@ -20,6 +20,8 @@ private:
         float single = 0;
         float bound = 0;  // with the margin
     };
+    // Whether relative figures mean something: the bound is under 1 % of the result.
+    static bool conditioned(const Expected& e, double scale);
     std::string describe(size_t sample) const;
 
     const FunctionTest& function_;

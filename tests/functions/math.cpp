@@ -1,0 +1,19 @@
+#include "tests/functions/function.h"
+#include "uber/reference/numbers.h"
+
+namespace kiln::test {
+namespace {
+
+using namespace reference;
+
+TEST(Functions, Math) {
+    Functions math("math.glsl");
+    math.test(
+        "saturate(x)", [](auto x) { return saturate(x); }, number("x", finite()));
+    math.test(
+        "max_component(c)", [](auto c) { return max_component(c); }, vector3("c", finite()));
+    math.run();
+}
+
+}  // namespace
+}  // namespace kiln::test
