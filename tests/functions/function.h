@@ -47,8 +47,9 @@
 //
 //     KILN_FUNCTION <name> <worst absolute> <worst relative> <worst ulp> <share of the bound> key=value...
 //
-// Relative errors and ulps are of the result's largest component, over the samples whose bound is under 1 % of it: elsewhere
-// the arguments leave fewer than seven bits, and the absolute error and the share of the bound are what tells.
+// Relative errors and ulps are of the result's largest component, over the samples without a close decision whose
+// bound is under 1 % of it: elsewhere the arguments leave fewer than seven bits, and the absolute error and the share of the
+// bound are what tells.
 
 #include <gtest/gtest.h>
 
@@ -56,7 +57,7 @@
 #include <optional>
 #include <tuple>
 
-#include "compiler/validate/device.h"
+#include "compiler/device/compute.h"
 #include "tests/functions/arguments.h"
 
 namespace kiln::test {
@@ -139,9 +140,10 @@ public:
 
     // GLSL that stands after the included files: constants, structures, a wrapper.
     void declare(std::string glsl) { declared_ += std::move(glsl) + "\n"; }
-    // "sampler2DShadow map". Samplers named ...Shadow compare LESS_OR_EQUAL; `adjust` may set other members.
+    // "sampler2DShadow map". Without a state: linear with linear mips and repeat, or, to compare, linear, clamp and
+    // LESS_OR_EQUAL.
     void texture(const std::string& declaration, std::shared_ptr<const ImageData> image,
-                 const std::function<void(Binding&)>& adjust = {});
+                 std::optional<SamplerState> sampler = {});
 
     template <class F, class... Shapes>
     TypedFunction<Shapes...> test(std::string call, F reference, Argument<Shapes>... arguments) {
@@ -174,7 +176,7 @@ private:
 
     std::vector<std::string> files_;
     std::string declared_, textures_;
-    std::vector<Binding> bindings_;
+    std::vector<NamedImage> images_;
     std::vector<std::unique_ptr<FunctionTest>> tests_;
 };
 

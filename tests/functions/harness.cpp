@@ -1,10 +1,9 @@
 // Writes the compute shader of a file's functions, runs it on the device and has the results judged.
 
 #include <cstdio>
-#include <cstring>
 
 #include "compiler/base/files.h"
-#include "compiler/toolchain/spirv.h"
+#include "compiler/device/compute.h"
 #include "tests/device/glsl.h"
 #include "tests/functions/samples.h"
 #include "tests/functions/verdict.h"
@@ -37,24 +36,6 @@ std::string library_text(const std::string& file) {
     return out;
 }
 
-Bytes bytes_of(const std::vector<uint32_t>& words) {
-    Bytes out(words.size() * 4);
-    std::memcpy(out.data(), words.data(), out.size());
-    return out;
-}
-
-Binding storage(uint32_t binding, const char* name, Bytes data, bool written) {
-    Binding b;
-    b.kind = ResourceKind::storage_block;
-    b.binding = binding;
-    b.name = name;
-    b.buffers = {std::move(data)};
-    b.written = written;
-    b.base = BaseType::uint32;
-    b.types = {BaseType::uint32};
-    return b;
-}
-
 void print(const Figures& f) {
     std::printf(
         "KILN_FUNCTION %s %.3g %.3g %.3g %.3g samples=%llu undecided=%llu unbounded=%llu rounding_ulp=%.3g "
@@ -70,17 +51,10 @@ void print(const Figures& f) {
 }  // namespace
 
 void Functions::texture(const std::string& declaration, std::shared_ptr<const ImageData> image,
-                        const std::function<void(Binding&)>& adjust) {
-    Binding b;
-    b.kind = ResourceKind::combined_image;
-    b.binding = 2 + static_cast<uint32_t>(bindings_.size());
-    b.name = declaration.substr(declaration.find_last_of(' ') + 1);
-    b.compare = declaration.find("Shadow ") != std::string::npos;
-    b.base = image->base;
-    b.images = {std::move(image)};
-    if (adjust) adjust(b);
-    textures_ += "layout(set = 0, binding = " + std::to_string(b.binding) + ") uniform " + declaration + ";\n";
-    bindings_.push_back(std::move(b));
+                        std::optional<SamplerState> sampler) {
+    const uint32_t binding = 2 + static_cast<uint32_t>(images_.size());
+    textures_ += "layout(set = 0, binding = " + std::to_string(binding) + ") uniform " + declaration + ";\n";
+    images_.push_back({declaration.substr(declaration.find_last_of(' ') + 1), std::move(image), sampler});
 }
 
 std::string Functions::shader() const {
@@ -116,60 +90,42 @@ std::string Functions::shader() const {
 }
 
 std::vector<Figures> Functions::evaluate(std::vector<std::string>& breaches) {
-    std::vector<Figures> out;
     const std::string text = shader();
-    const Options options;
-    const Compiled compiled = glsl_compile(Stage::compute, text, options);
-    for (const ToolMessage& m : compiled.messages)
-        if (m.severity == Severity::error) breaches.push_back("line " + std::to_string(m.line) + ": " + m.text);
-    if (compiled.words.empty()) {
-        breaches.push_back("the generated shader does not compile:\n" + text);
-        return out;
-    }
-    Result<Words> pruned = spirv_prune(compiled.words, options);
-    Result<Words> optimised = pruned.ok() ? spirv_optimise(*pruned, options) : std::move(pruned);
-    if (!optimised.ok()) {
-        breaches.push_back(optimised.error().message);
-        return out;
-    }
-
-    PipelineRequest request;
     std::vector<std::vector<uint32_t>> samples;
-    samples.reserve(tests_.size());
+    samples.reserve(tests_.size());  // verdicts refer to them
     std::vector<Verdict> verdicts;
+    std::vector<ComputeData> runs;
     for (size_t t = 0; t < tests_.size(); ++t) {
         const FunctionTest& f = *tests_[t];
         samples.push_back(make_samples(f));
-        verdicts.emplace_back(f, samples.back());
         const uint32_t count = static_cast<uint32_t>(samples.back().size() / f.words);
         if (count < least_samples) {
             breaches.push_back(f.name + ": only " + std::to_string(count) + " samples");
-            return out;
+            return {};
         }
-        Inputs inputs;
-        inputs.bindings.push_back(storage(0, "KilnArguments", bytes_of(samples.back()), false));
-        inputs.bindings.push_back(storage(1, "KilnResults", Bytes(size_t{count} * f.result.picks.size() * 4, 0xff), true));
-        inputs.bindings.insert(inputs.bindings.end(), bindings_.begin(), bindings_.end());
-        inputs.push_constants = bytes_of({static_cast<uint32_t>(t), count});
-        inputs.groups = {(count + group_size - 1) / group_size, 1, 1};
-        request.inputs.push_back(std::move(inputs));
+        verdicts.emplace_back(f, samples.back());
+        ComputeData& run = runs.emplace_back();
+        run.buffers = {{"KilnArguments", bytes_of(samples.back())},
+                       {"KilnResults", Bytes(size_t{count} * f.result.picks.size() * 4, 0xff)}};
+        run.images = images_;
+        run.push_constants = bytes_of(std::vector<uint32_t>{static_cast<uint32_t>(t), count});
+        run.groups = {(count + group_size - 1) / group_size, 1, 1};
     }
-    const std::pair<const char*, const Words*> ways[] = {{"unoptimised", &compiled.words}, {"optimised", &*optimised}};
-    for (const auto& [how, words] : ways) {
-        request.stages = {stage_of(*words)};
-        Result<PipelineOutput> ran = device().run(request);
+    for (const auto& [how, optimise] : {std::pair("unoptimised", Optimise::none), {"optimised", Optimise::performance}}) {
+        const Result<StageCode> stage = compute_stage(text, optimise);
+        if (!stage.ok()) {
+            breaches.push_back(stage.error().message + "\n" + text);
+            return {};
+        }
+        const Result<std::vector<ComputeResult>> ran = run_compute(device(), *stage, runs);
         if (!ran.ok()) {
-            breaches.push_back(ran.error().message);
-            return out;
+            breaches.push_back(std::string(how) + ": " + ran.error().message);
+            return {};
         }
-        for (const std::string& e : ran->errors) breaches.push_back(std::string(how) + ": " + e);
-        if (!ran->unsupported.empty()) breaches.push_back(std::string(how) + ", unsupported: " + ran->unsupported);
-        if (ran->runs.size() != tests_.size()) {
-            breaches.push_back(std::string(how) + ": the device did not run every function");
-            return out;
-        }
-        for (size_t t = 0; t < tests_.size(); ++t) verdicts[t].judge(ran->runs[t].values.at(0).words, how, breaches);
+        for (size_t t = 0; t < tests_.size(); ++t)
+            verdicts[t].judge(values_of<uint32_t>((*ran)[t].buffer("KilnResults")), how, breaches);
     }
+    std::vector<Figures> out;
     for (Verdict& v : verdicts) out.push_back(v.finish(breaches));
     return out;
 }

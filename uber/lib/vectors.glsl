@@ -3,7 +3,8 @@
 // Directions and normals.
 
 // v scaled to unit length, or `fallback` when v is shorter than 1e-37. Dividing by the largest component first keeps
-// dot(v, v) from overflowing or vanishing for any finite v. fallback: unit vector.
+// dot(v, v) from overflowing or vanishing for any finite v; Vulkan bounds the division's error up to 2^126 (8.5e37).
+// fallback: unit vector.
 vec3 safe_normalize(vec3 v, vec3 fallback) {
     const float largest = max(max(abs(v.x), abs(v.y)), abs(v.z));
     const vec3 scaled = v / max(largest, 1e-37);
