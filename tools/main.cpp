@@ -79,9 +79,9 @@ int main(int argc, char** argv) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
     std::signal(SIGPIPE, SIG_IGN);
 
-    const std::vector<kiln::Verb> verbs{kiln::verb_count,      kiln::verb_build,          kiln::verb_validate, kiln::verb_explain,
-                                        kiln::verb_preprocess, kiln::verb_dump,           kiln::verb_diff,     kiln::verb_sheet,
-                                        kiln::verb_cache,      kiln::verb_validate_worker};
+    const std::vector<kiln::Verb> verbs{kiln::verb_count,      kiln::verb_build, kiln::verb_validate,       kiln::verb_explain,
+                                        kiln::verb_preprocess, kiln::verb_dump,  kiln::verb_diff,           kiln::verb_sheet,
+                                        kiln::verb_report,     kiln::verb_cache, kiln::verb_validate_worker};
     const int code = dispatch(verbs, std::vector<std::string>(argv + 1, argv + argc));
     kiln::clear_progress();
     if (caught != 0) {

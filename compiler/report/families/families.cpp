@@ -1,0 +1,7 @@
+#include "compiler/report/families/families.h"
+
+namespace kiln::report {
+
+std::vector<Family> all_families(bool quick) { return {diffuse_family(quick), fresnel_family(quick), visibility_family(quick)}; }
+
+}  // namespace kiln::report

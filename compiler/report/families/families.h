@@ -1,0 +1,12 @@
+#pragma once
+// One function a built-in family, each in a file named after it.
+
+#include "compiler/report/family.h"
+
+namespace kiln::report {
+
+Family diffuse_family(bool quick);
+Family fresnel_family(bool quick);
+Family visibility_family(bool quick);
+
+}  // namespace kiln::report

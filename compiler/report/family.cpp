@@ -1,0 +1,20 @@
+#include "compiler/report/family.h"
+
+namespace kiln::report {
+
+Reference per_point(const Points& points, uint32_t width, uint32_t height, const Effort& effort,
+                    const std::function<Vec3d(size_t)>& value) {
+    Reference out;
+    out.picture = Picture(width, height);
+    effort.jobs.each(height, [&](size_t y) {
+        for (size_t i = y * width; i < (y + 1) * width && i < points.count(); ++i) {
+            const Vec3d v = value(i);
+            out.picture.rgb[3 * i] = v.x;
+            out.picture.rgb[3 * i + 1] = v.y;
+            out.picture.rgb[3 * i + 2] = v.z;
+        }
+    });
+    return out;
+}
+
+}  // namespace kiln::report

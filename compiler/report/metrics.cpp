@@ -1,0 +1,58 @@
+#include "compiler/report/metrics.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace kiln::report {
+
+namespace {
+
+double ratio(double over, double under) {
+    if (over == 0.0) return 0.0;
+    return under == 0.0 ? std::copysign(std::numeric_limits<double>::infinity(), over) : over / under;
+}
+
+}  // namespace
+
+Metrics measure(const Picture& x, const Picture& r, const std::vector<bool>& region) {
+    assert(x.rgb.size() == r.rgb.size());
+    assert(region.empty() || region.size() == r.pixels());
+    const auto counts = [&](size_t i) { return region.empty() || region[i / 3]; };
+    Metrics out;
+    double mean_r = 0.0, max_r = 0.0;
+    size_t all = 0, n = 0;
+    for (size_t i = 0; i < r.rgb.size(); ++i) {
+        if (!counts(i)) continue;
+        mean_r += r.rgb[i];
+        max_r = std::max(max_r, std::fabs(r.rgb[i]));
+        ++all;
+    }
+    if (all == 0) return out;
+    mean_r /= static_cast<double>(all);
+
+    double squares = 0.0, relative = 0.0, sum = 0.0, sum_r = 0.0;
+    for (size_t i = 0; i < r.rgb.size(); ++i) {
+        if (!counts(i)) continue;
+        if (!std::isfinite(x.rgb[i])) {
+            ++out.nonfinite;
+            continue;
+        }
+        const double d = x.rgb[i] - r.rgb[i];
+        squares += d * d;
+        relative += ratio(d * d, r.rgb[i] * r.rgb[i] + 0.01 * mean_r * mean_r);
+        out.max_rel = std::max(out.max_rel, ratio(std::fabs(d), std::max(std::fabs(r.rgb[i]), 1e-3 * max_r)));
+        out.max_abs = std::max(out.max_abs, std::fabs(d));
+        sum += d;
+        sum_r += r.rgb[i];
+        ++n;
+    }
+    if (n == 0) return out;
+    out.rmse = std::sqrt(squares / static_cast<double>(n));
+    out.relmse = relative / static_cast<double>(n);
+    out.bias = ratio(sum, sum_r);
+    return out;
+}
+
+}  // namespace kiln::report

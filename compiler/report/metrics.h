@@ -1,0 +1,26 @@
+#pragma once
+// How far a picture x is from its reference r. All means run over every number of the picture (pixels times channels).
+//
+//   RMSE   = sqrt(mean (x - r)^2)
+//   relMSE = mean (x - r)^2 / (r^2 + 0.01 mean(r)^2)
+//   maxRel = max |x - r| / max(|r|, 1e-3 max |r|)
+//   maxAbs = max |x - r|
+//   bias   = mean(x - r) / mean(r)
+//
+// A number of x that is not finite is counted and left out of the rest; whoever ranks pictures must look at the count first.
+// 0/0 is 0 (an exact black picture has no error) and anything else over 0 is infinite.
+
+#include "compiler/report/picture.h"
+
+namespace kiln::report {
+
+struct Metrics {
+    double relmse = 0, rmse = 0, max_rel = 0, max_abs = 0, bias = 0;
+    double flip = 0;  // mean HDR-FLIP (flip.h), filled by whoever wants it
+    uint64_t nonfinite = 0;
+};
+
+// x and r have one size. `region`: empty, or a flag a pixel; only flagged pixels count.
+Metrics measure(const Picture& x, const Picture& r, const std::vector<bool>& region = {});
+
+}  // namespace kiln::report

@@ -1,0 +1,69 @@
+// Every metric against values worked by hand.
+#include "compiler/report/metrics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace kiln::report {
+namespace {
+
+Picture grey(const std::vector<double>& values) {
+    Picture p(static_cast<uint32_t>(values.size()), 1);
+    for (size_t i = 0; i < values.size(); ++i)
+        for (size_t c = 0; c < 3; ++c) p.rgb[3 * i + c] = values[i];
+    return p;
+}
+
+TEST(Metrics, EqualPicturesHaveNoError) {
+    const Picture r = grey({0.0, 1.0, 5.0});
+    const Metrics m = measure(r, r);
+    EXPECT_EQ(m.relmse, 0.0);
+    EXPECT_EQ(m.rmse, 0.0);
+    EXPECT_EQ(m.max_rel, 0.0);
+    EXPECT_EQ(m.max_abs, 0.0);
+    EXPECT_EQ(m.bias, 0.0);
+    EXPECT_EQ(m.nonfinite, 0u);
+}
+
+TEST(Metrics, WorkedByHand) {
+    // r = 1, 3: mean 2, so 0.01 mean^2 = 0.04. x - r = 0.5, -1.
+    const Metrics m = measure(grey({1.5, 2.0}), grey({1.0, 3.0}));
+    EXPECT_DOUBLE_EQ(m.rmse, std::sqrt((0.25 + 1.0) / 2.0));
+    EXPECT_DOUBLE_EQ(m.relmse, (0.25 / 1.04 + 1.0 / 9.04) / 2.0);
+    EXPECT_DOUBLE_EQ(m.max_rel, 0.5);
+    EXPECT_DOUBLE_EQ(m.max_abs, 1.0);
+    EXPECT_DOUBLE_EQ(m.bias, -0.5 / 4.0);
+}
+
+TEST(Metrics, MaxRelDividesByAThousandthOfTheLargest) {
+    const Metrics m = measure(grey({0.001, 10.0}), grey({0.0, 10.0}));
+    EXPECT_DOUBLE_EQ(m.max_rel, 0.001 / 0.01);
+}
+
+TEST(Metrics, NumbersThatAreNotFiniteAreCountedAndLeftOut) {
+    Picture x = grey({1.0, 2.0, 3.0});
+    x.rgb[0] = std::numeric_limits<double>::quiet_NaN();
+    x.rgb[4] = std::numeric_limits<double>::infinity();
+    const Metrics m = measure(x, grey({1.0, 2.0, 4.0}));
+    EXPECT_EQ(m.nonfinite, 2u);
+    EXPECT_DOUBLE_EQ(m.rmse, std::sqrt(3.0 / 7.0));
+    EXPECT_DOUBLE_EQ(m.max_abs, 1.0);
+}
+
+TEST(Metrics, BlackReference) {
+    EXPECT_EQ(measure(grey({0.0}), grey({0.0})).relmse, 0.0);
+    EXPECT_TRUE(std::isinf(measure(grey({0.1}), grey({0.0})).relmse));
+    EXPECT_TRUE(std::isinf(measure(grey({-0.1}), grey({0.0})).bias));
+}
+
+TEST(Metrics, RegionCountsItsPixelsAlone) {
+    const Metrics m = measure(grey({2.0, 9.0, 3.0}), grey({1.0, 1.0, 3.0}), {true, false, true});
+    EXPECT_DOUBLE_EQ(m.rmse, std::sqrt(0.5));
+    EXPECT_DOUBLE_EQ(m.bias, 0.25);
+    EXPECT_EQ(measure(grey({2.0}), grey({1.0}), {false}).rmse, 0.0);
+}
+
+}  // namespace
+}  // namespace kiln::report
