@@ -52,19 +52,28 @@ float pcss_penumbra_width_directional(float receiver, float blocker, float angul
     return clamp(angular_size * (receiver - blocker), least, most);
 }
 
-// Tap i of count over the light's shape of width 1 about the centre. A square gets a rank-1 lattice: in projection on either
-// axis count levels 1 / count apart, shifted around the torus by jitter. A disk gets Vogel's spiral, turned by jitter.x;
-// for count = 16, 32, 64 the lattice steps are those with the longest shortest vector.
-// jitter: [0, 1)^2, 0 for none, else a hash of the pixel.
-vec2 pcss_tap(int i, int count, vec2 jitter) {
-#if PCSS_DISK_LIGHT
-    const float radius = 0.5 * sqrt((float(i) + 0.5) / float(count));
-    const float angle = float(i) * 2.39996323 + 2.0 * pi * jitter.x;
-    return radius * vec2(cos(angle), sin(angle));
-#else
+// Tap i of count over a square of width 1 about the centre: a rank-1 lattice. In projection on either axis count levels lie
+// 1 / count apart, shifted around the torus by jitter. For count = 16, 32, 64 the step is the one whose shortest vector is
+// longest. jitter: [0, 1)^2, 0 for none, else a hash of the pixel.
+vec2 pcss_square_tap(int i, int count, vec2 jitter) {
     const int step = count == 16 ? 5 : count == 32 ? 7 : count == 64 ? 19 : (count * 5 / 8) | 1;
     const vec2 cell = (vec2(i, (i * step) % count) + 0.5) / float(count);
     return fract(cell + jitter) - 0.5;
+}
+
+// The same over a disk of diameter 1: Vogel's spiral, "A better way to construct the sunflower head", 1979. turn: [0, 1).
+vec2 pcss_disk_tap(int i, int count, float turn) {
+    const float radius = 0.5 * sqrt((float(i) + 0.5) / float(count));
+    const float angle = 2.0 * pi * fract(float(i) * 0.38196601 + turn);
+    return radius * vec2(cos(angle), sin(angle));
+}
+
+// Over the light's shape.
+vec2 pcss_tap(int i, int count, vec2 jitter) {
+#if PCSS_DISK_LIGHT
+    return pcss_disk_tap(i, count, jitter.x);
+#else
+    return pcss_square_tap(i, count, jitter);
 #endif
 }
 

@@ -39,15 +39,23 @@ T pcss_penumbra_width_directional(const T& receiver, const T& blocker, const T& 
 }
 
 template <class T>
-Vec2<T> pcss_tap(int i, int count, const Vec2<T>& jitter, bool disk_light = false) {
-    if (disk_light) {
-        const T radius = sqrt(T(2 * i + 1) / T(2 * count)) / T(2);
-        const T angle = T(i) * T(2.39996323) + T(2 * pi) * jitter.x;
-        return {radius * cos(angle), radius * sin(angle)};
-    }
+Vec2<T> pcss_square_tap(int i, int count, const Vec2<T>& jitter) {
     const int step = count == 16 ? 5 : count == 32 ? 7 : count == 64 ? 19 : (count * 5 / 8) | 1;
     const auto cell = [&](int k, const T& shift) { return fract((T(k) + T(0.5)) / T(count) + shift) - T(0.5); };
     return {cell(i, jitter.x), cell((i * step) % count, jitter.y)};
+}
+
+// 0.38196601: the golden angle in turns, 2 - (1 + sqrt(5)) / 2.
+template <class T>
+Vec2<T> pcss_disk_tap(int i, int count, const T& turn) {
+    const T radius = T(0.5) * sqrt((T(i) + T(0.5)) / T(count));
+    const T angle = T(2 * pi) * fract(T(i) * T(0.38196601) + turn);
+    return {radius * cos(angle), radius * sin(angle)};
+}
+
+template <class T>
+Vec2<T> pcss_tap(int i, int count, const Vec2<T>& jitter, bool disk_light = false) {
+    return disk_light ? pcss_disk_tap(i, count, jitter.x) : pcss_square_tap(i, count, jitter);
 }
 
 template <class T, class Depth>
