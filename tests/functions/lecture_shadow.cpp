@@ -1,6 +1,6 @@
 #include "uber/reference/lecture_shadow.h"
 
-#include "tests/functions/function.h"
+#include "tests/functions/shadow_maps.h"
 
 namespace kiln::test {
 namespace {
@@ -29,6 +29,21 @@ TEST(Functions, LectureShadow) {
             return chebyshev_lecture(Vec2<decltype(m)>{m, m * m + v}, t);
         },
         number("m", linear(0.1, 0.9)), number("v", logarithmic(1e-3, 0.2)), number("t", linear(0, 1)));
+    const DepthTexture texture = depth_texture(square_scene(6), LightView{1, 20, 2}, 64);
+    lecture.texture("sampler2D map", texture.image(), [](Binding& b) { b.sampler = nearest(false); });
+    const auto read = [&texture](auto uv) { return texture.read(uv); };
+    lecture.test(
+        "shadow_factor_lecture(map, vec4(x, y, z, w))",
+        [read](auto x, auto y, auto z, auto w) {
+            return shadow_factor_lecture(read, Vec4<decltype(x)>{x, y, z, w});
+        },
+        number("x", linear(-2, 2)), number("y", linear(-2, 2)), number("z", linear(-1, 2)), number("w", linear(0.1, 2)));
+    lecture.test(
+        "shadow_factor_unbiased_lecture(map, vec4(x, y, z, w))",
+        [read](auto x, auto y, auto z, auto w) {
+            return shadow_factor_unbiased_lecture(read, Vec4<decltype(x)>{x, y, z, w});
+        },
+        number("x", linear(-2, 2)), number("y", linear(-2, 2)), number("z", linear(-1, 2)), number("w", linear(0.1, 2)));
     lecture.run();
 }
 

@@ -1,6 +1,6 @@
 #include "uber/reference/vsm.h"
 
-#include "tests/functions/function.h"
+#include "tests/functions/shadow_maps.h"
 
 namespace kiln::test {
 namespace {
@@ -50,6 +50,37 @@ TEST(Functions, Vsm) {
             return vsm_factor(m, distance, T(20), T(0.5), T(1e-9), T(0.2));
         },
         moments(), number("distance", linear(0, 20)));
+
+    // Moments that are multiples of 1/64 and 1/4096: sums of 64 x 64 of them are exact in fp32, so that the table is right and
+    // what is left is the arithmetic on it.
+    const LightView view{1, 16, 2};
+    constexpr double middle = 0.5;
+    MomentMap map = moment_map(distance_map(square_scene(6), view, 64), 64, view.far, middle);
+    const MomentMap sums = summed(map);
+    vsm.texture("sampler2D sat", moments_image(floats_of(sums), 64), [](Binding& b) { b.sampler = nearest(false); });
+    const auto table = [&sums](auto zero) {
+        using T = decltype(zero);
+        return [&sums](int x, int y) { return Vec2<T>{T(sums.at(x, y).x), T(sums.at(x, y).y)}; };
+    };
+    vsm.test(
+        "sat_sum(sat, place)", [table](auto place) { return sat_sum(table(place.x), 64, place); },
+        vector2("place", linear(0, 64).also({1, 32, 63})));
+    vsm.test(
+           "sat_average(sat, centre, width)",
+           [table](auto centre, auto width) { return sat_average(table(centre.x), 64, centre, width); },
+           vector2("centre", linear(0, 1)), vector2("width", logarithmic(1e-3, 2)))
+        // Adding up texels instead: the same but for double's own rounding of sums up to 1e3.
+        .truth([&map](auto centre, auto width) { return map.average(centre, width); }, 0, 1e-12);
+    vsm.test(
+        "vssm_factor(sat, vec4(x, y, (16.0 / 15.0) * w - (16.0 / 15.0), w), size, 1.0, 16.0, 2.0, 1.0 / 64.0, 0.5, 1e-4, 0.1)",
+        [table](auto x, auto y, auto w, auto size) {
+            using T = decltype(x);
+            const auto average = [&](auto centre, auto width) { return sat_average(table(centre.x), 64, centre, width); };
+            return vssm_factor(average, Vec4<T>{x, y, T(16.0 / 15) * w - T(16.0 / 15), w}, size, T(1), T(16), T(2), T(1.0 / 64),
+                               T(middle), T(1e-4), T(0.1));
+        },
+        number("x", linear(-6, 6)), number("y", linear(-6, 6)), number("w", linear(-1, 17).also({0, 1, 10, 16})),
+        number("size", linear(0, 2)));
     vsm.run();
 }
 

@@ -58,15 +58,21 @@ const vec2 poisson_disk_32[32] = vec2[32](
     vec2(0.1880, 0.8394), vec2(-0.6656, 0.5449), vec2(0.2816, -0.8128), vec2(0.5530, -0.6589)
 );
 
-// The disk's points turned by `turn` of a whole turn and scaled to a filter's radius. Turned differently from pixel to
-// pixel, the few levels of a small disk become noise, which the eye and a temporal filter forgive.
+// A point turned by an angle. Turning the disk differently from pixel to pixel, the few levels of a small disk become noise,
+// which the eye and a temporal filter forgive.
 vec2 turned(vec2 point, vec2 cos_sin) {
     return vec2(point.x * cos_sin.x - point.y * cos_sin.y, point.x * cos_sin.y + point.y * cos_sin.x);
 }
 
+// Cosine and sine of turn whole turns less a half: Vulkan bounds their errors on [-pi, pi] only. turn: [0, 1].
+vec2 cos_sin_of_turn(float turn) {
+    const float angle = 2.0 * pi * (turn - 0.5);
+    return vec2(cos(angle), sin(angle));
+}
+
 // radius: uv, >= 0. turn: [0, 1), any hash of the pixel, such as pixel_hash below.
 float pcf_poisson_16(sampler2DShadow map, vec3 place, vec2 slope, float bias, vec2 radius, float turn) {
-    const vec2 cos_sin = vec2(cos(2.0 * pi * turn), sin(2.0 * pi * turn));
+    const vec2 cos_sin = cos_sin_of_turn(turn);
     float lit = 0.0;
     for (int i = 0; i < 16; ++i) {
         lit += shadow_tap(map, place, slope, bias, turned(poisson_disk_16[i], cos_sin) * radius);
@@ -74,7 +80,7 @@ float pcf_poisson_16(sampler2DShadow map, vec3 place, vec2 slope, float bias, ve
     return lit / 16.0;
 }
 float pcf_poisson_32(sampler2DShadow map, vec3 place, vec2 slope, float bias, vec2 radius, float turn) {
-    const vec2 cos_sin = vec2(cos(2.0 * pi * turn), sin(2.0 * pi * turn));
+    const vec2 cos_sin = cos_sin_of_turn(turn);
     float lit = 0.0;
     for (int i = 0; i < 32; ++i) {
         lit += shadow_tap(map, place, slope, bias, turned(poisson_disk_32[i], cos_sin) * radius);

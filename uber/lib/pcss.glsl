@@ -64,8 +64,7 @@ vec2 pcss_square_tap(int i, int count, vec2 jitter) {
 // The same over a disk of diameter 1: Vogel's spiral, "A better way to construct the sunflower head", 1979. turn: [0, 1).
 vec2 pcss_disk_tap(int i, int count, float turn) {
     const float radius = 0.5 * sqrt((float(i) + 0.5) / float(count));
-    const float angle = 2.0 * pi * fract(float(i) * 0.38196601 + turn);
-    return radius * vec2(cos(angle), sin(angle));
+    return radius * cos_sin_of_turn(fract(float(i) * 0.38196601 + turn));
 }
 
 // Over the light's shape.

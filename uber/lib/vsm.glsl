@@ -70,8 +70,10 @@ vec2 sat_sum(sampler2D sat, vec2 place) {
                mix(sat_corner(sat, ivec2(a.x, b.y)), sat_corner(sat, b), part.x), part.y);
 }
 
-// Mean moments over a box of uv, cut to the map and not smaller than a texel, from a summed-area table of moments (moments.comp).
-// The error is that of the sums: about N^2 |q| 2^-24 for an N x N map, over the box's texels; centring keeps |q| small.
+// Mean moments over a box of uv, moved into the map and not smaller than a texel, from a summed-area table (moments.comp).
+// Each of the four sums is off by some 2^-24 N^2 |q|, which is shared by the box's texels: of a box `width` of the map wide the
+// moments are off by up to 2^-22 |q| / width^2, by much less where q is about as often positive as negative. So put the
+// reference near the mean, and the least variance above that error; for narrow boxes take mip_average.
 vec2 sat_average(sampler2D sat, vec2 centre, vec2 width) {
     const vec2 size = vec2(textureSize(sat, 0));
     const vec2 half_width = max(0.5 * width * size, vec2(0.5));

@@ -49,8 +49,8 @@ Vec2<T> pcss_square_tap(int i, int count, const Vec2<T>& jitter) {
 template <class T>
 Vec2<T> pcss_disk_tap(int i, int count, const T& turn) {
     const T radius = T(0.5) * sqrt((T(i) + T(0.5)) / T(count));
-    const T angle = T(2 * pi) * fract(T(i) * T(0.38196601) + turn);
-    return {radius * cos(angle), radius * sin(angle)};
+    const Vec2<T> direction = cos_sin_of_turn(fract(T(i) * T(0.38196601) + turn));
+    return {radius * direction.x, radius * direction.y};
 }
 
 template <class T>

@@ -63,6 +63,38 @@ T vssm_factor(const Average& average, const Vec4<T>& clip, const T& size, const 
     return reduce_light_bleeding(chebyshev_upper_bound(average(place.xy(), Vec2<T>{width, width}), t, least), bleeding);
 }
 
+// Summed-area tables: texel is a callable (x, y) -> sum of all texels up to (x, y), of a size x size table.
+template <class T, class Texel>
+Vec2<T> sat_corner(const Texel& texel, int x, int y) {
+    return x > 0 && y > 0 ? texel(x - 1, y - 1) : Vec2<T>{T(0), T(0)};
+}
+template <class T, class Texel>
+Vec2<T> sat_sum(const Texel& texel, int size, const Vec2<T>& place) {
+    const Vec2<T> low = map(place, [](const T& p) { return floor(p); });
+    const Vec2<T> part = place - low;
+    const int x0 = static_cast<int>(value(low.x)), y0 = static_cast<int>(value(low.y));
+    const int x1 = std::min(x0 + 1, size), y1 = std::min(y0 + 1, size);
+    const auto across = [&](int y) {
+        const Vec2<T> a = sat_corner<T>(texel, x0, y), b = sat_corner<T>(texel, x1, y);
+        return Vec2<T>{mix(a.x, b.x, part.x), mix(a.y, b.y, part.x)};
+    };
+    const Vec2<T> top = across(y0), bottom = across(y1);
+    return {mix(top.x, bottom.x, part.y), mix(top.y, bottom.y, part.y)};
+}
+template <class T, class Texel>
+Vec2<T> sat_average(const Texel& texel, int size, const Vec2<T>& centre, const Vec2<T>& width) {
+    const T side = T(size);
+    const auto low_high = [&](const T& c, const T& w) {
+        const T half = max(T(0.5) * w * side, T(0.5));
+        const T middle = clamp(c * side, half, max(side - half, half));
+        return Vec2<T>{clamp(middle - half, T(0), side), clamp(middle + half, T(0), side)};
+    };
+    const Vec2<T> x = low_high(centre.x, width.x), y = low_high(centre.y, width.y);
+    const auto sum = [&](const T& u, const T& v) { return sat_sum(texel, size, Vec2<T>{u, v}); };
+    const Vec2<T> all = sum(x.y, y.y) - sum(x.x, y.y) - sum(x.y, y.x) + sum(x.x, y.x);
+    return all / (max(x.y - x.x, T(1e-3)) * max(y.y - y.x, T(1e-3)));
+}
+
 // A square map of moments, row after row.
 struct MomentMap {
     int size = 0;
