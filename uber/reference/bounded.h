@@ -64,7 +64,7 @@ inline Bounded rounded(double value, double passed_on, double ulps, double absol
     if (std::isnan(value)) return {0, infinity};
     const double reach = std::fabs(value) + passed_on;
     double error = passed_on + std::max(ulps * ulp * reach, absolute);
-    if (std::fabs(value) - error < least && reach > 0) error += std::min(reach, least) + 0x1p-149;
+    if (std::fabs(value) - error < least && reach > 0) error += std::min(reach, least) + std::max(ulps, 1.0) * 0x1p-149;
     if (!(std::fabs(value) + error <= most)) error = infinity;
     return {value, error};
 }
@@ -101,7 +101,7 @@ inline Bounded operator/(const Bounded& a, const Bounded& b) {
     const double quotient = a.value / b.value, size = std::fabs(b.value), nearest = size - b.error;
     if (!(nearest >= bounds::least)) return bounds::rounded(quotient, bounds::infinity, 0);
     const double passed_on = (a.error + std::fabs(quotient) * b.error) / nearest;
-    if (size + b.error > 0x1p126) return {quotient, std::fabs(quotient) + passed_on};
+    if (size + b.error > 0x1p126) return bounds::rounded(quotient, std::fabs(quotient) + passed_on, 0);
     return bounds::rounded(quotient, passed_on, 2.5);
 }
 inline Bounded& operator+=(Bounded& a, const Bounded& b) { return a = a + b; }
