@@ -10,14 +10,26 @@ Vec3<T> ambient_radiance(const Vec3<T>& albedo, const Vec3<T>& irradiance, const
     return albedo * irradiance * open / T(pi);
 }
 
-// e (1 - a^(n+1)) / (1 - a), and e (n + 1) for a = 1.
+// e (1 - a^(n+1)) / (1 - a), and e (n + 1) for a = 1. Near 1 the numerator cancels: it is -expm1((n + 1) log a) there.
+inline Vec3<double> interreflection_textbook(const Vec3<double>& emission, const Vec3<double>& albedo, int bounces) {
+    return emission * map(albedo, [&](double a) {
+               if (a == 1) return bounces + 1.0;
+               return a == 0 ? 1.0 : -std::expm1((bounces + 1) * std::log(a)) / (1 - a);
+           });
+}
 template <class T>
 Vec3<T> interreflection(const Vec3<T>& emission, const Vec3<T>& albedo, int bounces) {
     return emission * map(albedo, [&](const T& a) {
-               if (value(a) == 1) return T(bounces + 1);
-               if (value(a) == 0) return T(1);
-               // Near 1 the numerator cancels: it is -expm1((n + 1) log a) there.
-               return T(-std::expm1((bounces + 1) * std::log(value(a))) / (1 - value(a)));
+               T sum = T(0), power = T(1);
+               for (int bit = 16; bit >= 0; --bit) {
+                   sum = sum + sum * power;
+                   power = power * power;
+                   if (((bounces + 1) >> bit & 1) != 0) {
+                       sum = sum * a + T(1);
+                       power = power * a;
+                   }
+               }
+               return sum;
            });
 }
 

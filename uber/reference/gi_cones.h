@@ -10,12 +10,15 @@ T cone_level(const T& t, const T& tangent, const T& voxel) {
     return log2(max(T(2) * t * tangent / voxel, T(1)));
 }
 
-// 1 - (1 - alpha)^ratio, in double through the logarithm where the power would cancel.
+inline double cone_opacity_textbook(double alpha, double ratio) {
+    if (alpha >= 1) return ratio > 0 ? 1 : 0;
+    return -std::expm1(ratio * std::log1p(-alpha));
+}
 template <class T>
 T cone_opacity(const T& alpha, const T& ratio) {
-    const double a = value(alpha), r = value(ratio);
-    if (a >= 1) return T(r > 0 ? 1 : 0);
-    return T(-std::expm1(r * std::log1p(-a)));
+    if (alpha >= T(1)) return T(ratio > T(0) ? 1 : 0);
+    if (alpha < T(1e-3)) return ratio * alpha * (T(1) - (ratio - T(1)) * alpha * (T(0.5) - (ratio - T(2)) * alpha / T(6)));
+    return T(1) - exp2(ratio * log2(T(1) - alpha));
 }
 
 template <class T>

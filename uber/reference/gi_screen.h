@@ -19,7 +19,7 @@ T screen_clip(const Vec3<T>& origin, const Vec3<T>& direction, const T& reach, c
 template <class T>
 Vec3<T> screen_point(const Vec4<T>& start, const Vec4<T>& end, const T& t) {
     const T s = t * start.w / (t * start.w + (T(1) - t) * end.w);
-    const Vec4<T> c = start * (T(1) - s) + end * s;
+    const Vec4<T> c{mix(start.x, end.x, s), mix(start.y, end.y, s), mix(start.z, end.z, s), mix(start.w, end.w, s)};
     return {c.x / c.w / T(2) + T(0.5), c.y / c.w / T(2) + T(0.5), c.w};
 }
 

@@ -21,10 +21,15 @@ T sdf_rectangle(const Vec3<T>& p, const Vec3<T>& origin, const Vec3<T>& u, const
 }
 
 // The share of a unit disc on one side of a chord at u: the area by the angle.
+inline double sdf_open_share_textbook(double d, double t, double tangent) {
+    const double u = clamp(d / max(t * tangent, 1e-6), -1.0, 1.0);
+    return 0.5 + (u * std::sqrt(1 - u * u) + std::asin(u)) / pi;
+}
 template <class T>
 T sdf_open_share(const T& d, const T& t, const T& tangent) {
     const T u = clamp(d / max(t * tangent, T(1e-6)), T(-1), T(1));
-    return T(0.5) + (u * sqrt(T(1) - u * u) + asin(u)) / T(pi);
+    const T c = sqrt((T(1) - u) * (T(1) + u));
+    return T(0.5) + (u * c + atan(u, c)) / T(pi);
 }
 template <class T>
 T sdf_soft_share(const T& d, const T& t, const T& k) {

@@ -1,6 +1,6 @@
 #pragma once
-// Scattering of a hair fibre after Chiang et al. 2016, as uber/lib/hair.glsl names it. Written in angles, exponentials and
-// powers as the papers print it; the longitudinal lobe with the logarithm of everything that overflows.
+// Scattering of a hair fibre after Chiang et al. 2016, as uber/lib/hair.glsl names it and in its forms; hair_textbook.h has
+// the papers'.
 
 #include "uber/reference/bessel.h"
 #include "uber/reference/numbers.h"
@@ -16,58 +16,68 @@ struct HairFibre {
     T tilt = T(0);
 };
 
-// The mean of Fresnel's two reflectances ((cos i - eta cos t) / (cos i + eta cos t))^2, ((eta cos i - cos t) / ...)^2.
 template <class T>
 T hair_fresnel(const T& cosine, const T& eta) {
-    const T cos_t = sqrt(T(1) - (T(1) - cosine * cosine) / (eta * eta));
-    const T across = (cosine - eta * cos_t) / (cosine + eta * cos_t);
-    const T along = (eta * cosine - cos_t) / (eta * cosine + cos_t);
-    return (across * across + along * along) / T(2);
+    const T g = sqrt(max(eta * eta - T(1) + cosine * cosine, T(0)));
+    const T a = (g - cosine) / (g + cosine);
+    const T b = (cosine * (g + cosine) - T(1)) / (cosine * (g - cosine) + T(1));
+    return a * a * (T(1) + b * b) / T(2);
 }
 
+namespace hair {
+
+// x^16 by squares.
 template <class T>
-T hair_variance(int p, const T& beta_m) {
-    const T root = T(0.726) * beta_m + T(0.812) * beta_m * beta_m + T(3.7) * pow(beta_m, T(20));
+T power_16(const T& x) {
+    const T x2 = x * x, x4 = x2 * x2, x8 = x4 * x4;
+    return x8 * x8;
+}
+
+// sqrt(1 - x^2).
+template <class T>
+T cosine_of(const T& x) {
+    return sqrt((T(1) - x) * (T(1) + x));
+}
+
+}  // namespace hair
+
+template <class T>
+T hair_variance(int p, const T& b) {
+    const T root = T(0.726) * b + T(0.812) * b * b + T(3.7) * hair::power_16(b) * b * b * b * b;
     const T v = root * root;
-    return max(p == 0 ? v : (p == 1 ? v / T(4) : T(4) * v), T(1e-5));
+    return max(p == 0 ? v : (p == 1 ? T(0.25) * v : T(4) * v), T(1e-5));
 }
 
 template <class T>
-T hair_logistic_scale(const T& beta_n) {
-    const T s = sqrt(T(pi / 8)) * (T(0.265) * beta_n + T(1.194) * beta_n * beta_n + T(5.372) * pow(beta_n, T(22)));
-    return max(s, T(1e-3));
+T hair_logistic_scale(const T& b) {
+    const T b2 = b * b;
+    return max(T(std::sqrt(pi / 8)) * (T(0.265) * b + T(1.194) * b2 + T(5.372) * hair::power_16(b) * b2 * b2 * b2), T(1e-3));
 }
 
-// log of exp(-si so / v) I0(x) / (2 v sinh(1/v)); 2 sinh(y) = exp(y) (1 - exp(-2y)).
 template <class T>
 T hair_longitudinal(const T& si, const T& ci, const T& so, const T& co, const T& v) {
-    const T x = ci * co / v;
-    const T log_i0 = x + log(bessel_i0_scaled(x));
-    const T log_sinh = T(1) / v + log(T(1) - exp(T(-2) / v));
-    return exp(log_i0 - si * so / v - log_sinh - log(v));
+    const T dc = ci - co, ds = si + so;
+    const T exponent = -(dc * dc + ds * ds) / (T(2) * v);
+    return exp(exponent) * bessel_i0_scaled(ci * co / v) / (v * (T(1) - exp(T(-2) / v)));
 }
 
-// The logistic exp(-x/s) / (s (1 + exp(-x/s))^2) over its own integral from -pi to pi.
 template <class T>
 T hair_azimuthal(const T& phi, int p, const T& s, const T& gamma_o, const T& gamma_t) {
-    const T q = T(p);
-    const T d = phi - (T(2) * q * gamma_t - T(2) * gamma_o + q * T(pi));
-    const T x = abs(d - T(2 * pi) * floor(d / T(2 * pi) + T(0.5)));
-    const auto cumulative = [&](const T& y) { return T(1) / (T(1) + exp(-y / s)); };
-    const T e = exp(-x / s);
-    return e / (s * (T(1) + e) * (T(1) + e)) / (cumulative(T(pi)) - cumulative(T(-pi)));
+    const T d = phi - (T(2 * p) * gamma_t - T(2) * gamma_o + T(p * pi));
+    const T x = d - T(2 * pi) * floor(d / T(2 * pi) + T(0.5));
+    const T e = exp(-abs(x) / s), cut = exp(T(-pi) / s);
+    return e * (T(1) + cut) / (s * (T(1) + e) * (T(1) + e) * (T(1) - cut));
 }
 
-// Order by order; the last is the geometric series from order 3 on.
 template <class T>
 Vec3<T> hair_attenuation(int p, const T& f, const Vec3<T>& t) {
     return map(t, [&](const T& through) {
         if (p == 0) return f;
-        const T in_and_out = (T(1) - f) * (T(1) - f);
-        if (p == 1) return in_and_out * through;
-        if (p == 2) return in_and_out * through * through * f;
-        const T rest = T(1) - through * f;
-        return value(rest) <= 0 ? T(0) : in_and_out * through * through * through * f * f / rest;
+        const T a1 = (T(1) - f) * (T(1) - f) * through;
+        if (p == 1) return a1;
+        const T a2 = a1 * through * f;
+        if (p == 2) return a2;
+        return a2 * through * f / max((T(1) - f) + f * (T(1) - through), T(1e-20));
     });
 }
 
@@ -78,8 +88,7 @@ Vec3<T> hair_transmittance(const Vec3<T>& absorption, const T& cos_gamma_t, cons
 
 template <class T>
 Vec3<T> hair_absorption(const Vec3<T>& colour, const T& b) {
-    const T d = T(5.969) - T(0.215) * b + T(2.532) * b * b - T(10.73) * b * b * b + T(5.574) * b * b * b * b +
-                T(0.245) * b * b * b * b * b;
+    const T d = T(5.969) + b * (T(-0.215) + b * (T(2.532) + b * (T(-10.73) + b * (T(5.574) + b * T(0.245)))));
     return map(colour, [&](const T& c) {
         const T x = log(clamp(c, T(1e-3), T(1))) / d;
         return x * x;
@@ -88,28 +97,29 @@ Vec3<T> hair_absorption(const Vec3<T>& colour, const T& b) {
 
 template <class T>
 Vec3<T> hair_chiang(const HairFibre<T>& fibre, const Vec3<T>& to_light, const Vec3<T>& to_eye, const T& h) {
-    const auto off = [](const Vec3<T>& w) { return sqrt(w.y * w.y + w.z * w.z); };
-    const T theta_o = atan(to_eye.x, off(to_eye));
-    const T theta_i = atan(to_light.x, off(to_light));
-    const auto azimuth = [](const Vec3<T>& w) { return value(w.y) == 0 && value(w.z) == 0 ? T(0) : atan(w.z, w.y); };
-    const T phi = azimuth(to_light) - azimuth(to_eye);
+    const auto off = [](const Vec3<T>& w) { return length(Vec2<T>{w.y, w.z}); };
+    const T si = clamp(to_light.x, T(-1), T(1)), ci = off(to_light);
+    const T so = clamp(to_eye.x, T(-1), T(1)), co = off(to_eye);
+    const T across = to_eye.y * to_light.z - to_eye.z * to_light.y;
+    const T along = to_eye.y * to_light.y + to_eye.z * to_light.z;
+    const T phi = value(across) == 0 && value(along) == 0 ? T(0) : atan(across, along);
 
-    const T gamma_o = asin(h);
-    const T sin_theta_t = sin(theta_o) / fibre.eta;
-    const T cos_theta_t = sqrt(T(1) - sin_theta_t * sin_theta_t);
-    const T gamma_t = asin(h * cos(theta_o) / sqrt(fibre.eta * fibre.eta - sin(theta_o) * sin(theta_o)));
+    const T sin_gamma_o = clamp(h, T(-1), T(1)), cos_gamma_o = hair::cosine_of(sin_gamma_o);
+    const T sin_gamma_t = clamp(sin_gamma_o * co * inversesqrt(fibre.eta * fibre.eta - so * so), T(-1), T(1));
+    const T cos_gamma_t = hair::cosine_of(sin_gamma_t), cos_theta_t = hair::cosine_of(so / fibre.eta);
+    const T gamma_o = atan(sin_gamma_o, cos_gamma_o), gamma_t = atan(sin_gamma_t, cos_gamma_t);
 
-    const T f = hair_fresnel(cos(theta_o) * cos(gamma_o), fibre.eta);
-    const Vec3<T> t = hair_transmittance(fibre.absorption, cos(gamma_t), cos_theta_t);
+    const T f = hair_fresnel(co * cos_gamma_o, fibre.eta);
+    const Vec3<T> t = hair_transmittance(fibre.absorption, cos_gamma_t, cos_theta_t);
     const T s = hair_logistic_scale(fibre.beta_n);
-    const auto along = [&](int p, const T& turn) {
-        const T tilted = theta_o + turn * fibre.tilt;
-        return hair_longitudinal(sin(theta_i), cos(theta_i), sin(tilted), abs(cos(tilted)), hair_variance(p, fibre.beta_m));
-    };
+    const T rest = hair_longitudinal(si, ci, so, co, hair_variance(3, fibre.beta_m)) / T(2 * pi);
+    Vec3<T> sum = hair_attenuation(3, f, t) * rest;
     const T turns[] = {T(-2), T(1), T(4)};
-    Vec3<T> sum = hair_attenuation(3, f, t) * (along(3, T(0)) / T(2 * pi));
     for (int p = 0; p < 3; ++p) {
-        const T lobe = along(p, turns[p]) * hair_azimuthal(phi, p, s, gamma_o, gamma_t);
+        const T sine = sin(turns[p] * fibre.tilt), cosine = cos(turns[p] * fibre.tilt);
+        const T lobe =
+            hair_longitudinal(si, ci, so * cosine + co * sine, abs(co * cosine - so * sine), hair_variance(p, fibre.beta_m)) *
+            hair_azimuthal(phi, p, s, gamma_o, gamma_t);
         sum = sum + hair_attenuation(p, f, t) * lobe;
     }
     return sum;

@@ -1,5 +1,5 @@
 #pragma once
-// Subsurface profiles, as uber/lib/subsurface.glsl names them, in the papers' own forms.
+// Subsurface profiles, as uber/lib/subsurface.glsl names them; ..._textbook are the papers' own forms.
 
 #include "uber/reference/numbers.h"
 
@@ -40,14 +40,19 @@ Vec3<T> burley_profile(const T& r, const Vec3<T>& s) {
 }
 
 template <class T>
-T burley_cumulative(const T& r, const T& s) {
+T burley_cumulative_textbook(const T& r, const T& s) {
     return T(1) - exp(-s * r) / T(4) - T(3) * exp(-s * r / T(3)) / T(4);
+}
+template <class T>
+T burley_cumulative(const T& r, const T& s) {
+    const T x = s * r / T(3), g = exp(-x);
+    const T one_minus_g = x < T(0.01) ? x * (T(1) - x * (T(0.5) - x / T(6))) : T(1) - g;
+    return one_minus_g * (T(4) + g + g * g) / T(4);
 }
 
 // By Newton's method on the logarithm of what lies beyond r, which is nearly straight; the share is cut as in the GLSL.
-template <class T>
-T burley_radius(const T& u, const T& s) {
-    const double target = std::log(std::fmax(1 - value(u), 1e-7));
+inline double burley_radius_textbook(double u, double s) {
+    const double target = std::log(std::fmax(1 - u, 1e-7));
     double x = 0;  // s r
     for (int i = 0; i < 60; ++i) {
         const double a = std::exp(-x) / 4, b = 3 * std::exp(-x / 3) / 4;
@@ -55,7 +60,20 @@ T burley_radius(const T& u, const T& s) {
         x += step;
         if (std::fabs(step) <= 1e-15 * x) break;
     }
-    return T(std::fmax(x, 0.0)) / s;
+    return std::fmax(x, 0.0) / s;
+}
+template <class T>
+T burley_radius(const T& u, const T& s) {
+    if (u < T(0.1)) {
+        T y = T(2.0 / 3) * u;
+        for (int i = 0; i < 2; ++i) y = y - (y * (T(6) + y * (y - T(3))) - T(4) * u) / (T(6) + y * (T(3) * y - T(6)));
+        T series = y / T(6);
+        for (const double k : {5.0, 4.0, 3.0, 2.0, 1.0}) series = y * (T(1 / k) + series);
+        return T(3) * series / s;
+    }
+    const T q = max(T(1) - u, T(1e-7));
+    const T w = exp2(log2(T(2) * q + sqrt(T(4) * q * q + T(1))) / T(3)), w2 = w * w;
+    return T(-3) * log(T(4) * q / (w2 + T(1) + T(1) / w2)) / s;
 }
 
 template <class T>
@@ -67,7 +85,7 @@ Vec3<T> burley_tap(int i, int n, const T& s, const T& rotation) {
 
 template <class T>
 Vec3<T> burley_tap_weight(const T& r, const Vec3<T>& s, const T& s_drawn) {
-    const T drawn = s_drawn * (exp(-s_drawn * r) + exp(-s_drawn * r / T(3)));
+    const T drawn = max(s_drawn * (exp(-s_drawn * r) + exp(-s_drawn * r / T(3))), T(1e-30));
     return map(s, [&](const T& shape) { return shape * (exp(-shape * r) + exp(-shape * r / T(3))) / drawn; });
 }
 

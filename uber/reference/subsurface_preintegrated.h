@@ -1,6 +1,6 @@
 #pragma once
 // Diffuse light on a curved surface integrated over its scattering, as uber/lib/subsurface_preintegrated.glsl names it:
-// the same sums with the same number of steps, in angles. With many steps they are the integrals themselves.
+// the same sums with the same number of steps. With many steps they are the integrals themselves.
 
 #include "uber/reference/subsurface.h"
 
@@ -8,15 +8,15 @@ namespace kiln::reference {
 
 template <class T>
 T preintegrated_ring(const T& n_dot_l, const T& curvature, const T& variance, int steps = 32) {
-    const T theta = acos(clamp(n_dot_l, T(-1), T(1)));
+    const T cosine = clamp(n_dot_l, T(-1), T(1)), sine = sqrt((T(1) - cosine) * (T(1) + cosine));
     const T sigma = sqrt(variance) * curvature;
-    const T reach = value(T(2) * sigma) < 1 ? T(2) * asin(T(2) * sigma) : T(pi);
+    const T reach = T(2) * sigma < T(1) ? T(2) * asin(T(2) * sigma) : T(pi);
+    const T scale = sigma > T(0) ? T(2) / (sigma * sigma) : T(0);
     T sum = T(0), weights = T(0);
     for (int i = 0; i < steps; ++i) {
-        const T x = reach * (T(2 * i + 1) / T(steps) - T(1));
-        const T chord_over_sigma = value(sigma) > 0 ? T(2) * sin(x / T(2)) / sigma : T(0);
-        const T weight = exp(-chord_over_sigma * chord_over_sigma / T(2));
-        sum = sum + weight * max(cos(theta + x), T(0));
+        const T x = reach * (T(2 * i + 1) / T(steps) - T(1)), half_sine = sin(x / T(2));
+        const T weight = exp(-scale * half_sine * half_sine);
+        sum = sum + weight * max(cosine * cos(x) - sine * sin(x), T(0));
         weights = weights + weight;
     }
     return sum / weights;
@@ -28,13 +28,20 @@ T burley_gaussian_variance(const T& s) {
 }
 
 // 1/pi of the integral of a + b cos(phi) from 0 to where it meets 0.
+inline double circle_of_clamped_cosine_textbook(double cos_theta, double cos_omega) {
+    const double a = cos_theta * cos_omega, b = std::sin(std::acos(cos_theta)) * std::sin(std::acos(cos_omega));
+    if (b <= std::fabs(a)) return std::fmax(a, 0.0);
+    const double phi = std::acos(-a / b);
+    return (a * phi + b * std::sin(phi)) / pi;
+}
 template <class T>
 T circle_of_clamped_cosine(const T& cos_theta, const T& cos_omega) {
     const T a = cos_theta * cos_omega;
-    const T b = sqrt(max(T(1) - cos_theta * cos_theta, T(0))) * sqrt(max(T(1) - cos_omega * cos_omega, T(0)));
-    if (value(b) <= std::fabs(value(a))) return max(a, T(0));
-    const T phi = acos(-a / b);
-    return (a * phi + b * sin(phi)) / T(pi);
+    const T b2 = max((T(1) - cos_theta) * (T(1) + cos_theta), T(0)) * max((T(1) - cos_omega) * (T(1) + cos_omega), T(0));
+    const T root2 = b2 - a * a;
+    if (root2 <= T(0)) return max(a, T(0));
+    const T root = sqrt(root2);
+    return (a * atan(root, -a) + root) / T(pi);
 }
 
 template <class T>

@@ -45,6 +45,7 @@ TEST(GiTruth, FurnaceIsTheGeometricSeriesWithoutNoise) {
             const auto traced = gi_irradiance(room, dark, {0.3, -1, 0.2}, {0, 1, 0}, bounces, 200, 2);
             const double series = interreflection(splat3(1.0), splat3(albedo), bounces).y;
             EXPECT_NEAR(traced[1].mean / pi, series, 1e-12);
+            EXPECT_NEAR(interreflection_textbook(splat3(1.0), splat3(albedo), bounces).y, series, 1e-12);
             EXPECT_NEAR(traced[1].standard_error, 0, 1e-12);
         }
     EXPECT_NEAR(interreflection(splat3(1.0), splat3(0.9), 10).x, 6.861894039, 5e-10);
@@ -166,6 +167,7 @@ TEST(GiCones, OpacityOfHalfAPathTwiceIsTheWhole) {
     for (const double a : {0.0, 1e-9, 1e-3, 0.3, 0.999}) {
         const double half = cone_opacity(a, 0.5);
         EXPECT_NEAR(1 - (1 - half) * (1 - half), a, 1e-15);
+        EXPECT_NEAR(half, cone_opacity_textbook(a, 0.5), 1e-15);
     }
     EXPECT_EQ(cone_opacity(1.0, 0.5), 1);
     EXPECT_EQ(cone_opacity(1.0, 0.0), 0);
@@ -205,7 +207,8 @@ TEST(GiSdf, ConePastAnEdgeIsTheShareOfADisc) {
         const double x = -1 + 1.5 * (i + 0.5) / n;
         area += 2 * std::sqrt(1 - x * x) * 1.5 / n / pi;
     }
-    EXPECT_NEAR(sdf_open_share(0.05, 1.0, 0.1), area, 1e-7);
+    EXPECT_NEAR(sdf_open_share_textbook(0.05, 1.0, 0.1), area, 1e-7);
+    EXPECT_NEAR(sdf_open_share(0.05, 1.0, 0.1), sdf_open_share_textbook(0.05, 1.0, 0.1), 1e-14);
     // A half space y < 0 beside a ray along z at height 0.1: the cone grows into it, at t = 2 half an axis' width.
     const auto ground = [](const Vec3<double>& p) { return p.y; };
     const double open = sdf_visibility<double>(ground, {0, 0.1, 0}, {0, 0, 1}, 0.1, 0.0, 2.0, 1e-6);

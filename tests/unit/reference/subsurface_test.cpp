@@ -59,8 +59,11 @@ TEST(Subsurface, BurleyProfileIntegratesToOneAndItsShareFollows) {
 }
 
 TEST(Subsurface, BurleyRadiusIsTheInverse) {
-    for (const double u : {0.0, 1e-9, 1e-3, 0.2, 0.5, 0.9, 0.999, 1 - 1e-6})
-        EXPECT_NEAR(burley_cumulative(burley_radius(u, 2.5), 2.5), u, 1e-14) << u;
+    for (const double u : {0.0, 1e-9, 1e-3, 0.2, 0.5, 0.9, 0.999, 1 - 1e-6}) {
+        EXPECT_NEAR(burley_cumulative_textbook(burley_radius_textbook(u, 2.5), 2.5), u, 1e-14) << u;
+        EXPECT_NEAR(burley_radius(u, 2.5), burley_radius_textbook(u, 2.5), 1e-14 + 2e-8 * u) << u;
+        EXPECT_NEAR(burley_cumulative(0.3 + u, 2.5), burley_cumulative_textbook(0.3 + u, 2.5), 1e-14) << u;
+    }
     EXPECT_NEAR(burley_radius(1.0, 1.0), burley_radius(1 - 1e-7, 1.0), 1e-9);
 }
 
@@ -106,7 +109,9 @@ TEST(Subsurface, CircleOfClampedCosineIsItsMean) {
                 const double phi = 2 * pi * (i + 0.5) / n;
                 sum += max(cos(theta) * cos(omega) + sin(theta) * sin(omega) * cos(phi), 0.0);
             }
-            EXPECT_NEAR(circle_of_clamped_cosine(cos(theta), cos(omega)), sum / n, 1e-7) << theta << ' ' << omega;
+            EXPECT_NEAR(circle_of_clamped_cosine_textbook(cos(theta), cos(omega)), sum / n, 1e-7) << theta << ' ' << omega;
+            EXPECT_NEAR(circle_of_clamped_cosine(cos(theta), cos(omega)),
+                        circle_of_clamped_cosine_textbook(cos(theta), cos(omega)), 1e-14);
         }
 }
 
