@@ -97,7 +97,7 @@ TEST(Functions, Cascades) {
         .named("choose_cascade");
 
     const DepthTexture texture = blocks(32);
-    cascades.texture("sampler2DArrayShadow maps", texture.image(true), [](Binding& b) { b.sampler = nearest(true); });
+    cascades.texture("sampler2DArrayShadow maps", texture.image(true), nearest(true));
     const auto compare = [&texture](int layer, auto uv, auto depth) { return texture.compare(uv, depth, layer); };
     cascades.test(
         "cascade_factor(maps, vec4(x, y, z, w), layer, 1e-4)",

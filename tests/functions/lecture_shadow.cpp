@@ -30,7 +30,7 @@ TEST(Functions, LectureShadow) {
         },
         number("m", linear(0.1, 0.9)), number("v", logarithmic(1e-3, 0.2)), number("t", linear(0, 1)));
     const DepthTexture texture = depth_texture(square_scene(6), LightView{1, 20, 2}, 64);
-    lecture.texture("sampler2D map", texture.image(), [](Binding& b) { b.sampler = nearest(false); });
+    lecture.texture("sampler2D map", texture.image(), nearest(false));
     const auto read = [&texture](auto uv) { return texture.read(uv); };
     lecture.test(
         "shadow_factor_lecture(map, vec4(x, y, z, w))",

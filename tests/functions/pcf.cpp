@@ -23,7 +23,7 @@ TEST(Functions, Pcf) {
         .unbounded(0);
 
     const DepthTexture texture = depth_texture(fence_scene(), LightView{1, 20, 2}, 64);
-    pcf.texture("sampler2DShadow map", texture.image(), [](Binding& b) { b.sampler = nearest(true); });
+    pcf.texture("sampler2DShadow map", texture.image(), nearest(true));
     const auto place = [] { return vector3("place", linear(0, 1)); };
     const auto slope = [] { return vector2("slope", linear(-0.3, 0.3)); };
     const auto width = [] { return vector2("width", logarithmic(1e-3, 0.5)); };

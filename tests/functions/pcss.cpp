@@ -54,8 +54,8 @@ TEST(Functions, Pcss) {
 
     const LightView view{1, 20, 2};
     const DepthTexture texture = depth_texture(square_scene(6), view, 64);
-    pcss.texture("sampler2D depth_map", texture.image(), [](Binding& b) { b.sampler = nearest(false); });
-    pcss.texture("sampler2DShadow shadow_map", texture.image(), [](Binding& b) { b.sampler = nearest(true); });
+    pcss.texture("sampler2D depth_map", texture.image(), nearest(false));
+    pcss.texture("sampler2DShadow shadow_map", texture.image(), nearest(true));
     const auto read = [&texture](auto uv) { return texture.read(uv); };
     const auto compare = [&texture](auto uv, auto depth) { return texture.compare(uv, depth); };
     pcss.test(

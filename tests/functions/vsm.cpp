@@ -57,7 +57,7 @@ TEST(Functions, Vsm) {
     constexpr double middle = 0.5;
     MomentMap map = moment_map(distance_map(square_scene(6), view, 64), 64, view.far, middle);
     const MomentMap sums = summed(map);
-    vsm.texture("sampler2D sat", moments_image(floats_of(sums), 64), [](Binding& b) { b.sampler = nearest(false); });
+    vsm.texture("sampler2D sat", moments_image(floats_of(sums), 64), nearest(false));
     const auto table = [&sums](auto zero) {
         using T = decltype(zero);
         return [&sums](int x, int y) { return Vec2<T>{T(sums.at(x, y).x), T(sums.at(x, y).y)}; };
