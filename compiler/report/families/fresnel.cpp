@@ -76,29 +76,27 @@ Family fresnel_family(bool quick) {
         scene(quick, "conductors", "Index 0.18 + 3.4i to 1.35 + 7.5i from bottom to top, cosine 0 to 1 from left to right.",
               "Point point_at(vec2 u) { return point_of(u.x, mix(0.18, 1.35, u.y), mix(3.4, 7.5, u.y)); }\n")};
     const std::string fits = "#include \"fresnel_fits.glsl\"\n", exact_forms = "#include \"fresnel_exact.glsl\"\n";
-    f.members = {
-        {"schlick_faded", "fresnel_schlick: no highlight below f0 = 0.02",
-         fits + "vec3 shade(Point p) { return fresnel_schlick(p.cosine, vec3(p.f0)); }"},
-        {"schlick_gaussian", "exponent fitted by a parabola: Karis 2013; faded as well",
-         fits + "vec3 shade(Point p) { return fresnel_spherical_gaussian(p.cosine, vec3(p.f0)); }"},
-        {"schlick_pow", "the lecture's pow(1 - cosine, 5); faded as well",
-         fits + "vec3 shade(Point p) { return fresnel_schlick_pow(p.cosine, vec3(p.f0)); }"},
-        {"schlick", "1 at grazing incidence whatever f0",
-         fits + "vec3 shade(Point p) { return fresnel_schlick_f90(p.cosine, vec3(p.f0), vec3(1.0)); }"},
-        {"f82", "Schlick less a term that is right at 82 degrees: Lazanyi 2005, Hoffman 2019",
-         fits + "vec3 shade(Point p) { return fresnel_f82(p.cosine, vec3(p.f0), vec3(p.f82)); }"},
-        {"exact_dielectric", "both polarisations of a real index",
-         exact_forms + "vec3 shade(Point p) { return vec3(fresnel_dielectric(p.cosine, p.n)); }"},
-        {"exact_conductor", "both polarisations of a complex index",
-         exact_forms + "vec3 shade(Point p) { return vec3(fresnel_conductor(p.cosine, p.n, p.k)); }"}};
+    f.members = {{"schlick_faded", "fresnel_schlick: no highlight below f0 = 0.02",
+                  fits + "vec3 shade(Point p) { return fresnel_schlick(p.cosine, vec3(p.f0)); }"},
+                 {"schlick_gaussian", "exponent fitted by a parabola: Karis 2013; faded as well",
+                  fits + "vec3 shade(Point p) { return fresnel_spherical_gaussian(p.cosine, vec3(p.f0)); }"},
+                 {"schlick_pow", "the lecture's pow(1 - cosine, 5); faded as well",
+                  fits + "vec3 shade(Point p) { return fresnel_schlick_pow(p.cosine, vec3(p.f0)); }"},
+                 {"schlick", "1 at grazing incidence whatever f0",
+                  fits + "vec3 shade(Point p) { return fresnel_schlick_f90(p.cosine, vec3(p.f0), vec3(1.0)); }"},
+                 {"f82", "Schlick less a term that is right at 82 degrees: Lazanyi 2005, Hoffman 2019",
+                  fits + "vec3 shade(Point p) { return fresnel_f82(p.cosine, vec3(p.f0), vec3(p.f82)); }"},
+                 {"exact_dielectric", "both polarisations of a real index",
+                  exact_forms + "vec3 shade(Point p) { return vec3(fresnel_dielectric(p.cosine, p.n)); }"},
+                 {"exact_conductor", "both polarisations of a complex index",
+                  exact_forms + "vec3 shade(Point p) { return vec3(fresnel_conductor(p.cosine, p.n, p.k)); }"}};
     const auto below = [&](Metric metric, const char* a, const char* b, double factor, const char* scene_name,
                            const char* because) {
         f.expectations.push_back({metric, Relation::below, a, b, factor, scene_name, because});
     };
     below(Metric::time, "schlick_faded", "schlick_pow", 9.0, "", "measured before as 0.14 and 1.27 ns");
     below(Metric::time, "schlick_faded", "schlick_pow", 1.0, "", "");
-    f.expectations.push_back(
-        {Metric::max_abs, Relation::near, "schlick_faded", "schlick_pow", 1.0 + 1e-5, "", "the same fit"});
+    f.expectations.push_back({Metric::max_abs, Relation::near, "schlick_faded", "schlick_pow", 1.0 + 1e-5, "", "the same fit"});
     below(Metric::time, "schlick_faded", "schlick_gaussian", 1.0, "", "exp2 alone is 0.1 ns");
     below(Metric::time, "exact_dielectric", "exact_conductor", 1.0, "", "");
     below(Metric::max_abs, "f82", "schlick", 1.0, "conductors", "the dip near 82 degrees");
@@ -107,7 +105,8 @@ Family fresnel_family(bool quick) {
     f.expectations.push_back({Metric::max_abs, Relation::at_most, "exact_conductor", "", 2e-6, "", "rounding alone"});
     f.expectations.push_back(
         {Metric::max_abs, Relation::at_most, "schlick", "", 0.2105, "dielectrics", "the largest error at index 1.1"});
-    below(Metric::max_abs, "schlick", "schlick_faded", 1.0, "dielectrics", "a real index below 1.33 has f0 below 0.02, and fades");
+    below(Metric::max_abs, "schlick", "schlick_faded", 1.0, "dielectrics",
+          "a real index below 1.33 has f0 below 0.02, and fades");
     return f;
 }
 

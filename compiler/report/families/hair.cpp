@@ -1,6 +1,6 @@
 // Light scattered by a hair: cheap lobes and fits against a dielectric fibre.
-#include "compiler/report/families/families.h"
 #include "uber/reference/hair.h"
+#include "compiler/report/families/families.h"
 
 namespace kiln::report {
 
@@ -23,7 +23,8 @@ Point point_at(vec2 u) {
 Scene scene_of(const Setting& setting, bool quick) {
     Scene s;
     s.name = setting.name;
-    s.what = setting.what + " The light's azimuth from left to right, its inclination from bottom to top; the eye at inclination " +
+    s.what = setting.what +
+             " The light's azimuth from left to right, its inclination from bottom to top; the eye at inclination " +
              std::to_string(setting.theta).substr(0, 3) + ".";
     s.width = quick ? 48 : 96;
     s.height = quick ? 48 : 96;
@@ -52,8 +53,10 @@ Family hair_family(bool quick) {
     f.number = 11;
     f.name = "hair";
     f.title = "Hair";
-    f.what = "What a fibre across the light sends to the eye. Kajiya and Kay's lobes, Karis' fits of Marschner's, and Chiang's fibre averaged "
-             "over its width with few and many steps.";
+    f.what =
+        "What a fibre across the light sends to the eye. Kajiya and Kay's lobes, Karis' fits of Marschner's, and Chiang's fibre "
+        "averaged "
+        "over its width with few and many steps.";
     f.primary = Metric::relmse;
     f.fields = {{"vec3", "to_light"}};
     const std::vector<Setting> settings{{"brown_rough", "Brown hair, roughness 0.6.", 0.0, 0.6, 0.4},
@@ -72,7 +75,8 @@ Family hair_family(bool quick) {
     add("kajiya_kay", "two lobes, exponent from the longitudinal variance",
         "#include \"hair.glsl\"\n#include \"hair_cheap.glsl\"\n"
         "vec3 shade(Point p) {\n    const float exponent = clamp(1.0 / hair_variance(0, beta), 1.0, 2048.0);\n"
-        "    return hair_kajiya_kay(tangent, p.to_light, to_eye, exp(vec3(-4.0 * absorption)) / 9.8696, vec3(0.05), exponent);\n}");
+        "    return hair_kajiya_kay(tangent, p.to_light, to_eye, exp(vec3(-4.0 * absorption)) / 9.8696, vec3(0.05), "
+        "exponent);\n}");
     add("scheuermann", "one lobe over the half vector and Kajiya and Kay's diffuse term",
         "#include \"hair.glsl\"\n#include \"hair_cheap.glsl\"\n"
         "vec3 shade(Point p) {\n    const float exponent = clamp(1.0 / hair_variance(0, beta), 1.0, 2048.0);\n"
@@ -92,8 +96,10 @@ Family hair_family(bool quick) {
                 "    fibre.beta_m = beta;\n    fibre.beta_n = beta;\n    fibre.tilt = 0.0;\n"
                 "    return hair_chiang_width(fibre, p.to_light, to_eye);\n}");
 
-    for (Expectation& e : ascending(Metric::relmse, {"chiang_16", "chiang_4", "karis", "kajiya_kay"})) f.expectations.push_back(e);
-    for (Expectation& e : ascending(Metric::time, {"kajiya_kay", "karis", "chiang_1", "chiang_4", "chiang_16"})) f.expectations.push_back(e);
+    for (Expectation& e : ascending(Metric::relmse, {"chiang_16", "chiang_4", "karis", "kajiya_kay"}))
+        f.expectations.push_back(e);
+    for (Expectation& e : ascending(Metric::time, {"kajiya_kay", "karis", "chiang_1", "chiang_4", "chiang_16"}))
+        f.expectations.push_back(e);
     f.expectations.push_back({Metric::bias, Relation::at_most, "chiang_16", "", 1e-2, "white", "energy is kept"});
     f.expectations.push_back({Metric::bias, Relation::at_least, "kajiya_kay", "", 0.1, "white", "not conserving"});
     return f;

@@ -124,7 +124,8 @@ Point point_at(vec2 u) {
            "return visibility_karis_direct(n_dot_l, n_dot_v, roughness);", forms);
     member("karis_ibl", "Schlick-Smith, k = alpha / 2: Karis 2013, for environments",
            "return visibility_karis_ibl(n_dot_l, n_dot_v, alpha);", forms);
-    member("hammon", "0.5 / mix(2 n.l n.v, n.l + n.v, alpha): Hammon 2017", "return visibility_hammon(n_dot_l, n_dot_v, alpha);", forms);
+    member("hammon", "0.5 / mix(2 n.l n.v, n.l + n.v, alpha): Hammon 2017", "return visibility_hammon(n_dot_l, n_dot_v, alpha);",
+           forms);
     member("separable", "exact Smith of both sides, uncorrelated: Walter et al. 2007",
            "return visibility_separable(n_dot_l, n_dot_v, alpha);", forms);
     member("correlated", "uber/lib/ggx.glsl: height-correlated Smith, fused", "return ggx_visibility(n_dot_l, n_dot_v, alpha);",
