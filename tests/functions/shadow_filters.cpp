@@ -72,6 +72,27 @@ TEST(ShadowFilters, PcssIsExactAlongAnEdgeAtEveryHeight) {
         }
 }
 
+TEST(ShadowFilters, PcssFollowsARoundLight) {
+    // A chord crosses about 2 sqrt(n / pi) of n equal cells of the disk and misjudges half of each at worst.
+    const ShadowScene scene = edge_scene(6);
+    const double w = edge_penumbra(10, 6, 1);
+    const std::vector<Texel> at = across(w, 10);
+    for (const int n : {16, 64}) {
+        const std::string taps = "#define PCSS_DISK_LIGHT 1\n#define PCSS_BLOCKER_TAPS " + std::to_string(n) +
+                                 "\n#define PCSS_FILTER_TAPS " + std::to_string(n) + "\n";
+        const std::vector<Texel> lit = evaluate(
+            taps + uber_text("lib/pcss.glsl"),
+            "pcss_factor(depth_map, shadow_map, " + clip_of_p + ", vec2(0.0), 1e-5, 1.0, 2.0, 16.0, 2.0, 1.0 / 512.0, vec2(0.0))",
+            at, maps_of(scene));
+        double worst = 0;
+        for (size_t i = 0; i < at.size(); ++i)
+            worst = std::max(worst,
+                             std::fabs(static_cast<double>(lit[i][0]) - disk_light_edge(2 * static_cast<double>(at[i][0]) / w)));
+        std::printf("KILN_SHADOW disk pcss_%d %.6f of %.6f\n", n, worst, std::sqrt(n / pi) / n);
+        EXPECT_LE(worst, std::sqrt(n / pi) / n + 1e-4) << n;
+    }
+}
+
 TEST(ShadowFilters, NoPlaneShadowsItself) {
     // Row 23. In the light's view space z = 10 + a x + b y, which is 10 / (1 - a X - b Y) along the ray (X, Y, 1).
     const LightView wide{2, 60, 2};
