@@ -28,7 +28,7 @@ TEST(Functions, Environment) {
         .test(
             "cube_face_coordinates(d, cube_face(d))", [](auto d) { return cube_face_coordinates(d, cube_face(d)); },
             vector3("d", either_sign(1e-3, 1e3)))
-        .skip([](auto d) { return dot(d, d) == 0; });
+        .skip([](auto d) { return max(max(abs(d.x), abs(d.y)), abs(d.z)) < 1e-30; });
     environment.test(
         "cube_direction(face, p)", [](auto face, auto p) { return cube_direction(static_cast<int>(face), p); },
         integer("face", 0, 5), vector2("p", linear(-1, 1)));
