@@ -189,6 +189,7 @@ TEST(Lightmap, FourKindsOfACornellBox) {
     const auto bc = [&](BcFormat format, TexelFormat texels) {
         return std::vector{l0, compressed(format, texels, y), compressed(format, texels, z), compressed(format, texels, x)};
     };
+    const auto high = bc(BcFormat::bc7, TexelFormat::bc7_unorm), low = bc(BcFormat::bc1, TexelFormat::bc1_rgb_unorm);
     const std::vector<std::shared_ptr<ImageData>> full = {halves(m0),
                                                           halves(image_of_moments(floor, [](const M& m) { return m.m1_y; })),
                                                           halves(image_of_moments(floor, [](const M& m) { return m.m1_z; })),
@@ -202,15 +203,11 @@ TEST(Lightmap, FourKindsOfACornellBox) {
     }
 
     const Error half = compare("rgba16f_x4", floor, shade(full, false, 1), false, 32);
-    const Error hq = compare("hq_bc6h_3bc7", floor, shade(bc(BcFormat::bc7, TexelFormat::bc7_unorm), true, 1), false, 4);
-    const Error lq = compare("lq_bc6h_3bc1", floor, shade(bc(BcFormat::bc1, TexelFormat::bc1_rgb_unorm), true, 1), false, 2.5);
-    const auto ratios = [&](BcFormat format, TexelFormat texels) {
-        return shade({halves(m0), compressed(format, texels, y), compressed(format, texels, z), compressed(format, texels, x)},
-                     true, 1);
-    };
+    const Error hq = compare("hq_bc6h_3bc7", floor, shade(high, true, 1), false, 4);
+    const Error lq = compare("lq_bc6h_3bc1", floor, shade(low, true, 1), false, 2.5);
     const Error bc6h = compare("m0_bc6h_alone", floor, shade({l0, halves(y), halves(z), halves(x)}, true, 1), false, 25);
-    const Error bc7 = compare("ratios_bc7_alone", floor, ratios(BcFormat::bc7, TexelFormat::bc7_unorm), false, 11);
-    const Error bc1 = compare("ratios_bc1_alone", floor, ratios(BcFormat::bc1, TexelFormat::bc1_rgb_unorm), false, 9.5);
+    const Error bc7 = compare("ratios_bc7_alone", floor, shade({halves(m0), high[1], high[2], high[3]}, true, 1), false, 11);
+    const Error bc1 = compare("ratios_bc1_alone", floor, shade({halves(m0), low[1], low[2], low[3]}, true, 1), false, 9.5);
     const Error rgba8 = compare("flat_rgba8_srgb", floor, shade({srgb8(flat, range)}, false, range), true, 4);
 
     // fp16: half an ulp of m0 and of each of three m1, which together are at most sqrt(3) m0.
@@ -224,8 +221,9 @@ TEST(Lightmap, FourKindsOfACornellBox) {
     EXPECT_LE(bc6h.encoding_rms, 0.139 / 1.7320508);
     EXPECT_LT(half.encoding_rms, hq.encoding_rms);
     EXPECT_LT(hq.encoding_rms, lq.encoding_rms);
-    // sRGB is steepest at the top: half a step of 8 bits is 0.5 x 2.4 / 1.055 / 255 of the range there.
-    EXPECT_LE(rgba8.absolute_worst, 0.00447 * static_cast<double>(range) * 1.001);
+    // sRGB is steepest at the top: half a step of 8 bits is 0.5 x 2.4 / 1.055 / 255 of the range there. A device may decode half
+    // a step off again (Direct3D 11.3 functional specification, 3.2.3.8, which drivers hold Vulkan's formats to as well).
+    EXPECT_LE(rgba8.absolute_worst, 2 * 0.00447 * static_cast<double>(range));
     // Against the truth: direction is worth more than precision.
     EXPECT_LT(hq.relative_mse, rgba8.relative_mse);
     EXPECT_LT(lq.relative_mse, rgba8.relative_mse);
