@@ -20,7 +20,8 @@ int gi_trace(vec3 origin, vec3 direction, float start, float reach, out float t)
         const vec3 n = cross(u, v);
         const float slope = dot(n, direction);
         const vec3 d = GI_QUAD(i).origin - origin;
-        const float at = dot(n, d) / (abs(slope) < 1e-20 ? 1e-20 : slope);
+        if (abs(slope) < 1e-30) continue;
+        const float at = dot(n, d) / slope;
         if (!(at > start && at < t)) continue;
         const vec3 p = direction * at - d;
         const float a = dot(p, u) / dot(u, u);

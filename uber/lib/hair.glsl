@@ -80,15 +80,16 @@ float hair_azimuthal(float phi, int p, float s, float gamma_o, float gamma_t) {
 
 // The share of light that leaves a fibre by lobe p: f is the reflectance at the surface, t what one crossing lets through.
 //   A0 = f,   A1 = (1 - f)^2 t,   A2 = (1 - f)^2 t^2 f,   A3 = (1 - f)^2 t^3 f^2 / (1 - t f)  (the rest of the series)
-// They sum to 1 where t = 1. The denominator is taken as (1 - f) + f (1 - t), of which no part cancels.
+// They sum to 1 where t = 1. The denominator is taken as (1 - f) + f (1 - t), of which no part cancels, and one 1 - f stands
+// directly over it, which leaves a quotient of at most 1.
 // p: 0 to 3; f, t: [0, 1].
 vec3 hair_attenuation(int p, float f, vec3 t) {
     if (p == 0) return vec3(f);
-    const vec3 a1 = (1.0 - f) * (1.0 - f) * t;
-    if (p == 1) return a1;
-    const vec3 a2 = a1 * t * f;
-    if (p == 2) return a2;
-    return a2 * t * f / max(vec3(1.0 - f) + f * (vec3(1.0) - t), vec3(1e-20));
+    const float enters = 1.0 - f;
+    if (p == 1) return enters * enters * t;
+    if (p == 2) return enters * enters * f * t * t;
+    const vec3 tf = t * f;
+    return enters * t * tf * tf * (enters / max(vec3(enters) + f * (vec3(1.0) - t), vec3(1e-20)));
 }
 
 // What one crossing of the fibre lets through: exp(-absorption 2 cos(gamma_t) / cos(theta_t)).

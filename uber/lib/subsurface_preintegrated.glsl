@@ -8,10 +8,17 @@
 #define PREINTEGRATED_STEPS 32
 #endif
 
+// sin(x) for x in [-pi/2, pi/2] by its series to x^11: relative error below 6e-8.
+float preintegrated_sine(float x) {
+    const float y = x * x;
+    return x * (1.0 - y / 6.0 * (1.0 - y / 20.0 * (1.0 - y / 42.0 * (1.0 - y / 72.0 * (1.0 - y / 110.0)))));
+}
+
 // Penner's ring of radius 1/curvature with a Gaussian profile of the variance v:
 //   integral of max(0, cos(theta + x)) G(c) dx / integral of G(c) dx,   c = 2 sin(x/2) / curvature, the chord
-// by the midpoint rule to 4 standard deviations or once around. n_dot_l: [-1, 1]; curvature: 1/length, [0, inf);
-// variance: length^2, [0, inf). On a flat surface Lambert's cosine.
+// by the midpoint rule to 4 standard deviations or once around. The only sine is that of x/2, which stands over sigma: it
+// needs the relative precision that sin() does not promise, hence a series, and cos(x), sin(x) follow from it.
+// n_dot_l: [-1, 1]; curvature: 1/length, [0, inf); variance: length^2, [0, inf). On a flat surface Lambert's cosine.
 float preintegrated_ring(float n_dot_l, float curvature, float variance) {
     const float cosine = clamp(n_dot_l, -1.0, 1.0);
     const float sine = sqrt((1.0 - cosine) * (1.0 + cosine));
@@ -22,9 +29,9 @@ float preintegrated_ring(float n_dot_l, float curvature, float variance) {
     float weights = 0.0;
     for (int i = 0; i < PREINTEGRATED_STEPS; ++i) {
         const float x = reach * ((2.0 * float(i) + 1.0) / float(PREINTEGRATED_STEPS) - 1.0);
-        const float half_sine = sin(0.5 * x);
-        const float weight = exp(-scale * half_sine * half_sine);
-        sum += weight * max(cosine * cos(x) - sine * sin(x), 0.0);
+        const float t = preintegrated_sine(0.5 * x);
+        const float weight = exp(-scale * t * t);
+        sum += weight * max(cosine * (1.0 - 2.0 * t * t) - sine * (2.0 * t * sqrt(max((1.0 - t) * (1.0 + t), 0.0))), 0.0);
         weights += weight;
     }
     return sum / weights;

@@ -14,7 +14,7 @@ int gi_trace(const Quads& quads, const Vec3<T>& origin, const Vec3<T>& direction
     for (const GiQuad<T>& quad : quads) {
         const Vec3<T> n = cross(quad.u, quad.v), d = quad.origin - origin;
         const T slope = dot(n, direction), at = dot(n, d) / slope;
-        if (value(slope) != 0 && at > start && at < t) {
+        if (std::fabs(value(slope)) >= 1e-30 && at > start && at < t) {
             const Vec3<T> p = direction * at - d;
             const T a = dot(p, quad.u) / dot(quad.u, quad.u), b = dot(p, quad.v) / dot(quad.v, quad.v);
             if (a >= T(0) && a <= T(1) && b >= T(0) && b <= T(1)) {

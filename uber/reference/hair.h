@@ -3,6 +3,7 @@
 // the papers'.
 
 #include "uber/reference/bessel.h"
+#include "uber/reference/fading.h"
 #include "uber/reference/numbers.h"
 
 namespace kiln::reference {
@@ -57,15 +58,14 @@ T hair_logistic_scale(const T& b) {
 template <class T>
 T hair_longitudinal(const T& si, const T& ci, const T& so, const T& co, const T& v) {
     const T dc = ci - co, ds = si + so;
-    const T exponent = -(dc * dc + ds * ds) / (T(2) * v);
-    return exp(exponent) * bessel_i0_scaled(ci * co / v) / (v * (T(1) - exp(T(-2) / v)));
+    return fading(-(dc * dc + ds * ds) / (T(2) * v)) * bessel_i0_scaled(ci * co / v) / (v * (T(1) - exp(T(-2) / v)));
 }
 
 template <class T>
 T hair_azimuthal(const T& phi, int p, const T& s, const T& gamma_o, const T& gamma_t) {
     const T d = phi - (T(2 * p) * gamma_t - T(2) * gamma_o + T(p * pi));
     const T x = d - T(2 * pi) * floor(d / T(2 * pi) + T(0.5));
-    const T e = exp(-abs(x) / s), cut = exp(T(-pi) / s);
+    const T e = fading(-abs(x) / s), cut = exp(T(-pi) / s);
     return e * (T(1) + cut) / (s * (T(1) + e) * (T(1) + e) * (T(1) - cut));
 }
 
@@ -73,11 +73,11 @@ template <class T>
 Vec3<T> hair_attenuation(int p, const T& f, const Vec3<T>& t) {
     return map(t, [&](const T& through) {
         if (p == 0) return f;
-        const T a1 = (T(1) - f) * (T(1) - f) * through;
-        if (p == 1) return a1;
-        const T a2 = a1 * through * f;
-        if (p == 2) return a2;
-        return a2 * through * f / max((T(1) - f) + f * (T(1) - through), T(1e-20));
+        const T enters = T(1) - f;
+        if (p == 1) return enters * enters * through;
+        if (p == 2) return enters * enters * f * through * through;
+        const T quotient = clamp(enters / max(enters + f * (T(1) - through), T(1e-20)), T(0), T(1));
+        return enters * through * through * through * f * f * quotient;
     });
 }
 

@@ -2,7 +2,7 @@
 // Kajiya and Kay's and Karis' hair, as uber/lib/hair_cheap.glsl names it and in its forms; hair_cheap_textbook.h has the
 // published ones.
 
-#include "uber/reference/numbers.h"
+#include "uber/reference/fading.h"
 
 namespace kiln::reference {
 
@@ -27,7 +27,7 @@ T hair_scheuermann(const Vec3<T>& tangent, const Vec3<T>& to_light, const Vec3<T
 template <class T>
 T hair_gaussian(const T& x, const T& b) {
     const T t = x / b;
-    return exp(-t * t / T(2)) * T(0.3989422804) / b;
+    return fading(-t * t / T(2)) * T(0.3989422804) / b;
 }
 
 template <class T>
@@ -52,7 +52,7 @@ Vec3<T> hair_karis(const Vec3<T>& tangent, const Vec3<T>& to_light, const Vec3<T
     const T sa = T(std::sin(-0.07)), ca = T(std::cos(-0.07));  // of constants: folded before any device
     const T x = along - T(2) * sa * (ca * half_phi * sqrt(cos2_v) + sa * sine_v);
     const T width = T(2) * b * half_phi;
-    const T lobe_r = half_phi > T(0) ? exp(-x * x / max(width * width, T(1e-30))) * T(0.25 * 0.2820947918) / b : T(0);
+    const T lobe_r = half_phi > T(0) ? fading(-x * x / max(width * width, T(1e-30))) * T(0.25 * 0.2820947918) / b : T(0);
     const T behind = mix(T(1), backlit, saturate(-v_dot_l));
     Vec3<T> sum = splat3(lobe_r * hair_schlick(sqrt(saturate(T(0.5) + v_dot_l / T(2)))) * T(2) * specular * behind);
 
@@ -64,7 +64,10 @@ Vec3<T> hair_karis(const Vec3<T>& tangent, const Vec3<T>& to_light, const Vec3<T
     const T tt = hair_gaussian(along - shift, b / T(2)) * exp(T(-3.65) * cos_phi - T(3.98)) * f_tt * f_tt * backlit;
     const T f = hair_schlick(cos_theta_d / T(2));
     const T trt = hair_gaussian(along - T(4) * shift, T(2) * b) * exp(T(17) * cos_phi - T(16.78)) * (T(1) - f) * (T(1) - f) * f;
-    return sum + map(base, [&](const T& c) { return pow(c, crossing) * tt + pow(c, T(0.8) / cos_theta_d) * trt; });
+    // Powers of [0, 1]: clamped for Bounded, which does not know it where the exponent is uncertain.
+    return sum + map(base, [&](const T& c) {
+               return clamp(pow(c, crossing), T(0), T(1)) * tt + clamp(pow(c, T(0.8) / cos_theta_d), T(0), T(1)) * trt;
+           });
 }
 
 }  // namespace kiln::reference

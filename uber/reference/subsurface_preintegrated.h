@@ -2,10 +2,32 @@
 // Diffuse light on a curved surface integrated over its scattering, as uber/lib/subsurface_preintegrated.glsl names it:
 // the same sums with the same number of steps. With many steps they are the integrals themselves.
 
+#include "uber/reference/fading.h"
 #include "uber/reference/subsurface.h"
 
 namespace kiln::reference {
 
+template <class T>
+T preintegrated_sine(const T& x) {
+    const T y = x * x;
+    T series = T(1);
+    for (const double k : {110.0, 72.0, 42.0, 20.0, 6.0}) series = T(1) - y / T(k) * series;
+    return x * series;
+}
+
+// In angles. steps as below.
+inline double preintegrated_ring_textbook(double n_dot_l, double curvature, double variance, int steps = 32) {
+    const double theta = std::acos(n_dot_l), sigma = std::sqrt(variance) * curvature;
+    const double reach = 2 * sigma < 1 ? 2 * std::asin(2 * sigma) : pi;
+    double sum = 0, weights = 0;
+    for (int i = 0; i < steps; ++i) {
+        const double x = reach * ((2.0 * i + 1) / steps - 1), chord = sigma > 0 ? 2 * std::sin(x / 2) / sigma : 0;
+        const double weight = std::exp(-chord * chord / 2);
+        sum += weight * std::fmax(std::cos(theta + x), 0.0);
+        weights += weight;
+    }
+    return sum / weights;
+}
 template <class T>
 T preintegrated_ring(const T& n_dot_l, const T& curvature, const T& variance, int steps = 32) {
     const T cosine = clamp(n_dot_l, T(-1), T(1)), sine = sqrt((T(1) - cosine) * (T(1) + cosine));
@@ -14,9 +36,10 @@ T preintegrated_ring(const T& n_dot_l, const T& curvature, const T& variance, in
     const T scale = sigma > T(0) ? T(2) / (sigma * sigma) : T(0);
     T sum = T(0), weights = T(0);
     for (int i = 0; i < steps; ++i) {
-        const T x = reach * (T(2 * i + 1) / T(steps) - T(1)), half_sine = sin(x / T(2));
-        const T weight = exp(-scale * half_sine * half_sine);
-        sum = sum + weight * max(cosine * cos(x) - sine * sin(x), T(0));
+        const T t = preintegrated_sine(reach * (T(2 * i + 1) / T(steps) - T(1)) / T(2));
+        const T weight = fading(-scale * t * t);
+        const T cos_x = T(1) - T(2) * t * t, sin_x = T(2) * t * sqrt(max((T(1) - t) * (T(1) + t), T(0)));
+        sum = sum + weight * max(cosine * cos_x - sine * sin_x, T(0));
         weights = weights + weight;
     }
     return sum / weights;

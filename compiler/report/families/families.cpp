@@ -2,8 +2,6 @@
 
 namespace kiln::report {
 
-std::vector<Family> all_families(bool quick) {
-    return {diffuse_family(quick), fresnel_family(quick), visibility_family(quick), shadow_family(quick), hair_family(quick)};
-}
+std::vector<Family> all_families(bool quick) { return {diffuse_family(quick), fresnel_family(quick), visibility_family(quick)}; }
 
 }  // namespace kiln::report
