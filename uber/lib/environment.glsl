@@ -85,9 +85,12 @@ vec3 equirect_direction(vec2 uv) {
 }
 
 // Reads such a picture at an explicit level: across the seam u jumps from 1 to 0, which derivatives would take for a whole
-// picture and answer with the smallest mip. The sampler repeats in u and clamps in v.
+// picture and answer with the smallest mip. The sampler repeats in u. v stays half a row of the coarser level that is read
+// away from its ends, so that a pole is never mixed with the opposite one, whatever the sampler does in v. d: not 0.
 vec3 sample_equirect(sampler2D picture, vec3 d, float lod) {
-    return textureLod(picture, equirect_uv(d), lod).rgb;
+    const vec2 uv = equirect_uv(d);
+    const float half_row = 0.5 / float(textureSize(picture, int(ceil(max(lod, 0.0)))).y);
+    return textureLod(picture, vec2(uv.x, clamp(uv.y, half_row, 1.0 - half_row)), lod).rgb;
 }
 
 // A sky whose sun is an analytic light is kept without it. Radiance above `limit` is what the map cannot hold or what would

@@ -19,8 +19,8 @@ vec2 split_sum_texel(ivec2 texel, int size) {
     return vec2(texel) / float(size - 1);
 }
 
-// A and B. The sampler clamps and is bilinear; a 32^2 table is within 0.014 and 0.020 of the integrals, 64^2 within 0.006
-// and 0.008, at small roughness and grazing view.
+// A and B. The sampler clamps and is bilinear. From roughness 0.1 and n.v 0.05 on, a 32^2 table is within 0.003 and 0.005 of
+// the integrals, 64^2 within 0.0007 and 0.001: a quarter of what it would be with (i + 1/2) / size at the texels.
 vec2 split_sum_lookup(sampler2D table, float n_dot_v, float roughness, float size) {
     return textureLod(table, split_sum_uv(n_dot_v, roughness, size), 0.0).rg;
 }

@@ -99,9 +99,11 @@ Vec3<T> equirect_direction(const Vec2<T>& uv) {
     const T azimuth = (uv.x - T(0.5)) * T(2.0 * pi), polar = uv.y * T(pi);
     return {sin(polar) * cos(azimuth), cos(polar), sin(polar) * sin(azimuth)};
 }
+// rows: of the coarser level that is read.
 template <class Picture, class T>
-Vec3<T> sample_equirect(const Picture& picture, const Vec3<T>& d, const T& lod) {
-    return picture(equirect_uv(d), lod);
+Vec3<T> sample_equirect(const Picture& picture, const Vec3<T>& d, const T& lod, const T& rows) {
+    const Vec2<T> uv = equirect_uv(d);
+    return picture(Vec2<T>{uv.x, clamp(uv.y, T(0.5) / rows, T(1) - T(0.5) / rows)}, lod);
 }
 
 template <class T>

@@ -83,6 +83,9 @@ TEST(Environment, EquirectGoesThereAndBackAndKnowsItsPoles) {
     EXPECT_EQ(top.x, 0.5);
     EXPECT_EQ(top.y, 0.0);
     EXPECT_EQ(bottom.y, 1.0);
+    const auto row = [](const Vec2<double>& uv, double) { return V{uv.y, 0, 0}; };
+    EXPECT_EQ(sample_equirect(row, V{0, 1, 0}, 0.0, 8.0).x, 1.0 / 16.0) << "the middle of the first row";
+    EXPECT_EQ(sample_equirect(row, V{0, -1, 0}, 0.0, 8.0).x, 15.0 / 16.0);
     // Across the seam behind -x, u jumps by a whole picture and repeats.
     const double left = equirect_uv(V{-1, 0, 1e-12}).x, right = equirect_uv(V{-1, 0, -1e-12}).x;
     EXPECT_NEAR(left - right, 1.0, 1e-11);
