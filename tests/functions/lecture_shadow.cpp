@@ -1,4 +1,5 @@
 #include "uber/reference/lecture_shadow.h"
+#include "uber/reference/pcf.h"
 
 #include "tests/functions/shadow_maps.h"
 
@@ -44,6 +45,35 @@ TEST(Functions, LectureShadow) {
             return shadow_factor_unbiased_lecture(read, Vec4<decltype(x)>{x, y, z, w});
         },
         number("x", linear(-2, 2)), number("y", linear(-2, 2)), number("z", linear(-1, 2)), number("w", linear(0.1, 2)));
+    // Four layers whose matrices shift the receiver by quarters of the map.
+    DepthTexture layers{16, {}};
+    for (uint32_t i = 0; i < 4 * 16 * 16; ++i) layers.depths.push_back(static_cast<float>(pixel_hash(i, 7)));
+    lecture.texture("sampler2DArrayShadow maps", layers.image(true), nearest(true));
+    lecture.declare(
+        "mat4 shifted(int i) { mat4 m = mat4(1.0); m[3].x = 0.25 * float(i); return m; }\n"
+        "mat4 matrices[4] = mat4[4](shifted(0), shifted(1), shifted(2), shifted(3));");
+    int samples = 0;
+    lecture
+        .test(
+            "cascaded_shadow_lecture(maps, matrices, receiver, count, count - 1)",
+            [&layers, &samples](auto receiver, int count) {
+                using T = decltype(receiver.x);
+                Mat4<T> matrices[4];
+                for (int i = 0; i < 4; ++i)
+                    matrices[i] = {{{T(1), T(0), T(0), T(0)},
+                                    {T(0), T(1), T(0), T(0)},
+                                    {T(0), T(0), T(1), T(0)},
+                                    {T(0.25 * i), T(0), T(0), T(1)}}};
+                const auto maps = [&](int layer, const Vec2<T>& uv, const T& depth) {
+                    return ++samples, layers.compare(uv, depth, layer);
+                };
+                samples = 0;
+                const T lit = cascaded_shadow_lecture(maps, matrices, receiver, count, count - 1);
+                EXPECT_EQ(samples, count);  // B30: one would do
+                return lit;
+            },
+            vector3("receiver", linear(-1, 1)), integer("count", 1, 4))
+        .named("cascaded_shadow_lecture");
     lecture.run();
 }
 

@@ -17,6 +17,18 @@ T shadow_factor_unbiased_lecture(const Depth& depth_map, const Vec4<T>& clip) {
     return depth_map(uv) < clip.z / clip.w ? T(0) : T(1);
 }
 
+// maps: callable (layer, uv, depth) -> 1 lit or 0; all `count` layers are sampled for the one that is kept.
+template <class T, class Compare>
+T cascaded_shadow_lecture(const Compare& maps, const Mat4<T> (&clip_of_world)[4], const Vec3<T>& receiver, int count, int index) {
+    T lit[4] = {T(1), T(1), T(1), T(1)};
+    for (int i = 0; i < count; ++i) {
+        const Vec4<T> clip = clip_of_world[i] * Vec4<T>{receiver.x, receiver.y, receiver.z, T(1)};
+        const Vec2<T> uv{clip.x / clip.w * T(0.5) + T(0.5), clip.y / clip.w * T(0.5) + T(0.5)};
+        lit[i] = maps(i, uv, clip.z / clip.w);
+    }
+    return lit[index];
+}
+
 template <class T>
 T pcss_penumbra_width_lecture(const T& receiver, const T& blocker, const T& size) {
     return (receiver - blocker) * size / blocker;

@@ -147,6 +147,31 @@ TEST(Cascades, MapHoldsTheSliceAndMovesByWholeTexels) {
     EXPECT_GT(moved, 1000);
 }
 
+TEST(Cascades, TexelsGrowWithTheRatioOfASlicesEnds) {
+    // Seen from the camera a texel is widest where its slice begins. A slice that is wider than long has radius k end, k the
+    // tangent of half the diagonal field of view, so that logarithmic splits give 2 k (f/n)^(1/m) / (size - 1) to every slice;
+    // more slices shrink the ratio's root, not the error in proportion to their number.
+    const double tx = 0.9, ty = 0.5, near = 1, far = 1000, k = std::sqrt(tx * tx + ty * ty);
+    constexpr int size = 2048;
+    const LightAxes light = light_axes({0.3, -0.8, 0.4});
+    const auto widest = [&](int count, double lambda) {
+        double start = near, worst = 0;
+        for (const double end : practical_splits(near, far, count, lambda)) {
+            const BoundingSphere sphere = slice_sphere(start, end, tx, ty);
+            worst = std::max(worst, fit_cascade({0, 0, sphere.depth}, sphere.radius, light, size, 100).texel / start);
+            start = end;
+        }
+        return worst;
+    };
+    for (int count = 1; count <= 4; ++count)
+        EXPECT_NEAR(widest(count, 1), 2 * k * std::pow(far / near, 1.0 / count) / (size - 1), 1e-12) << count;
+    for (const double lambda : {0.0, 0.5, 0.75})
+        for (int count = 2; count <= 4; ++count) {
+            EXPECT_LT(widest(count, lambda), widest(count - 1, lambda)) << lambda;
+            EXPECT_GT(widest(count, lambda), widest(count, 1)) << lambda;
+        }
+}
+
 TEST(Cascades, LightAxesAreAtRightAnglesWhereverLightComesFrom) {
     for (const Vec3<double>& d : {Vec3<double>{0, -1, 0}, {0, 1, 0}, {1, 0, 0}, {0.1, -5, 0.1}}) {
         const LightAxes a = light_axes(d);
