@@ -21,7 +21,7 @@ TEST(ShadowTables, SumsAreExactWhereFloatsAre) {
         for (size_t y = 0; y < height; ++y)
             for (size_t x = 0; x < width; ++x)
                 for (size_t c = 0; c < 2; ++c) {
-                    const auto at = [&](size_t i, size_t j) { return (j * width + i) * 2 + c; };
+                    const auto at = [c, line = width](size_t i, size_t j) { return (j * line + i) * 2 + c; };
                     sums[at(x, y)] = static_cast<double>(pairs[at(x, y)]) + (x > 0 ? sums[at(x - 1, y)] : 0) +
                                      (y > 0 ? sums[at(x, y - 1)] : 0) - (x > 0 && y > 0 ? sums[at(x - 1, y - 1)] : 0);
                     wrong += static_cast<double>(table[at(x, y)]) != sums[at(x, y)];

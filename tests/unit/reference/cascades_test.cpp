@@ -101,10 +101,9 @@ TEST(Cascades, SphereHoldsTheSliceAndIsTheSmallest) {
     for (const auto& [start, end] : {std::pair{0.1, 5.0}, {5.0, 6.0}, {20.0, 100.0}}) {
         const double tx = 0.9, ty = 0.5;
         const BoundingSphere sphere = slice_sphere(start, end, tx, ty);
-        const auto reach = [&](double centre) {
+        const auto reach = [&, ends = std::array{start, end}](double centre) {
             double r = 0;
-            for (const double z : {start, end})
-                r = std::max(r, std::sqrt((z - centre) * (z - centre) + z * z * (tx * tx + ty * ty)));
+            for (const double z : ends) r = std::max(r, std::sqrt((z - centre) * (z - centre) + z * z * (tx * tx + ty * ty)));
             return r;
         };
         EXPECT_NEAR(reach(sphere.depth), sphere.radius, 1e-12 * end);
