@@ -50,7 +50,8 @@ float sdf_soft_share(float d, float t, float k) {
 
 // Distance along a ray to the first surface, negative if there is none within `reach`. Steps by the distance itself, and
 // by no less than `near`, the distance that counts as met.
-// direction: unit; start: [0, reach); near: about half a texel, > 0.
+// direction: unit; start: [0, reach); near: > 0, half a texel for a signed field, a whole one for a field of sheets, whose
+// distances have no sign and, filtered, never fall to 0.
 #ifndef SDF_STEPS
 #define SDF_STEPS 64
 #endif
