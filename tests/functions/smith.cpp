@@ -73,6 +73,23 @@ TEST(Functions, Smith) {
             },
             l, v, alpha)
         .named("visibility_symmetry");
+    // What is visible is at most all: 4 n.l n.v V <= 1, to 8 ulp, so no pair of grazing directions shines.
+    smith.declare(
+        "float at_most_one(float x) { return x <= 1.0 + 9.6e-7 ? 1.0 : 0.0; }"
+        "vec4 masking(float l, float v, float a) {"
+        "    const float over = 4.0 * l * v;"
+        "    return vec4(at_most_one(over * visibility_separable(l, v, a)), at_most_one(over * visibility_karis_ibl(l, v, a)),"
+        "                at_most_one(over * visibility_height_correlated_pushed(l, v, a)),"
+        "                at_most_one(over * visibility_hammon(l, v, a))); }");
+    smith
+        .test(
+            "masking(l, v, alpha)",
+            [](auto x, auto, auto) {
+                using T = decltype(x);
+                return Vec4<T>{T(1), T(1), T(1), T(1)};
+            },
+            l, v, alpha)
+        .named("masking_at_most_one");
     smith.run();
 }
 

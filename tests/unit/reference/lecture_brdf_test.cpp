@@ -6,8 +6,10 @@
 
 #include "uber/reference/blinn_phong_raw.h"
 #include "uber/reference/furnace.h"
+#include "uber/reference/ggx.h"
 #include "uber/reference/ggx_forms.h"
 #include "uber/reference/half.h"
+#include "uber/reference/random.h"
 
 namespace kiln::reference {
 namespace {
@@ -46,6 +48,61 @@ TEST(LectureBrdf, DistributionInFloatAndHalf) {
         EXPECT_FALSE(std::isfinite(value(ggx_distribution_lecture(Half(1.0), Half(alpha))))) << alpha;
     EXPECT_NEAR(value(ggx_distribution_lecture(Half(1.0), Half(0.02))), 516.5, 0.5);
     EXPECT_NEAR(value(ggx_distribution_lecture(Half(1.0), Half(0.05))), 133.5, 0.5);
+}
+
+// Forms of D over random frames and angles up to 3 alpha, in T, against the angle between the same rounded vectors.
+struct Worst {
+    double lecture = 0, cosine = 0, cross = 0, difference = 0;  // largest relative error of finite results
+    double lecture_lost = 0;                                    // share that is not finite
+};
+template <class T>
+Worst worst_of_forms(double alpha) {
+    Random random(11);
+    Worst worst;
+    const auto rounded = [](const V3& v) { return Vec3<T>{T(v.x), T(v.y), T(v.z)}; };
+    const auto exact = [](const Vec3<T>& v) { return normalize(V3{value(v.x), value(v.y), value(v.z)}); };
+    const int samples = 20000;
+    for (int i = 0; i < samples; ++i) {
+        const V3 axis = from_polar(2 * random() - 1, 2 * pi * random());
+        const V3 aside = normalize(cross(axis, V3{random() - 0.5, random() - 0.5, random() - 0.5}));
+        const double theta = 3 * alpha * random();
+        const Vec3<T> n = rounded(axis), h = rounded(axis * std::cos(theta) + aside * std::sin(theta));
+        const V3 across = cross(exact(n), exact(h));
+        const T a = T(alpha);
+        const double d = ggx_from_sine(dot(exact(n), exact(h)), dot(across, across), value(a));
+        const auto take = [&](double& most, const T& result) {
+            const double error = std::fabs(value(result) / d - 1);
+            if (std::isfinite(error)) most = std::fmax(most, error);
+            return !std::isfinite(error);
+        };
+        worst.lecture_lost += take(worst.lecture, ggx_distribution_lecture(saturate(dot(n, h)), a)) / double(samples);
+        take(worst.cosine, ggx_distribution_cosine(dot(n, h), a));
+        take(worst.cross, ggx_distribution_cross(n, h, a));
+        EXPECT_FALSE(take(worst.difference, ggx_distribution(n, h, a))) << alpha;
+    }
+    return worst;
+}
+
+TEST(LectureBrdf, FormsOfTheDistributionInFloat) {
+    const struct { double alpha, lecture; } rows[] = {{5e-4, 3.55}, {1e-3, .505}, {2.025e-3, .112}, {.01, 5.6e-3}, {.1, 5.4e-5}};
+    for (const auto& row : rows) {
+        const Worst w = worst_of_forms<float>(row.alpha);
+        EXPECT_GT(w.lecture, 0.6 * row.lecture) << row.alpha;
+        EXPECT_LT(w.lecture, 1.6 * row.lecture) << row.alpha;
+        EXPECT_LE(w.cross, 1.2e-7 / row.alpha + 1e-6) << row.alpha;
+        EXPECT_LE(w.difference, 2e-6) << row.alpha;
+    }
+    const Worst w = worst_of_forms<float>(1e-4);
+    EXPECT_LE(w.difference, 2e-6);
+}
+
+TEST(LectureBrdf, FormsOfTheDistributionInHalf) {
+    for (const double alpha : {.0079, .03, .1}) {
+        const Worst w = worst_of_forms<Half>(alpha);
+        EXPECT_LE(w.difference, 2e-2) << alpha;
+    }
+    EXPECT_GE(worst_of_forms<Half>(.0079).lecture_lost, 0.69);
+    EXPECT_GT(worst_of_forms<Half>(.03).lecture, 5.0);
 }
 
 TEST(LectureBrdf, FresnelAboveOne) {
