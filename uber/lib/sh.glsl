@@ -211,19 +211,19 @@ vec3 sh_irradiance_clamped(ShL2 sh, vec3 n) {
 
 // One channel of the non-linear L1 form:
 //   E = m0/4 (a + (1 - a)(p + 1) q^p),   q = (1 + m1 . n / |m1|) / 2,   p = 1 + 2 k,   a = (1 - k) / (1 + k),   k = |m1| / m0
-// It keeps m0, equals m0/4 + m1 . n / 2 for small k, and a small light (k = 1) gives ((1 + cos) / 2)^3: right where it
-// faces the light, RMSE 0.057. Hazel, "Reconstructing Diffuse Lighting from Spherical Harmonic Data", Geomerics, 2017.
-// m0: W/m2, below 0 counts as 0; m1: (x, y, z) of this channel, k is limited to [0, 1], which no light leaves; n: unit.
+// where (1 - a)(p + 1) = 4 k. It keeps m0, equals m0/4 + m1 . n / 2 for small k, and a small light (k = 1) gives
+// ((1 + cos) / 2)^3: right where it faces the light, RMSE 0.057. Hazel, "Reconstructing Diffuse Lighting from Spherical
+// Harmonic Data", Geomerics, 2017.
+// m0: W/m2, below 0 counts as 0; m1: (x, y, z) of this channel, at most 1e18, below 1e-15 counts as 0; k is limited to [0, 1],
+// which no light leaves; n: unit.
 float sh_irradiance_nonlinear_channel(float m0, vec3 m1, vec3 n) {
     const float power = max(m0, 0.0);
-    const float largest = max(max(abs(m1.x), abs(m1.y)), max(abs(m1.z), 1e-30));
-    const vec3 scaled = m1 / largest;
-    const float scaled_length = sqrt(max(dot(scaled, scaled), 1e-30));
-    const float k = saturate(scaled_length * (largest / max(power, 1e-30)));
-    const float q = saturate(0.5 + 0.5 * dot(scaled, n) / scaled_length);
-    const float p = 1.0 + 2.0 * k;
-    const float a = (1.0 - k) / (1.0 + k);
-    return 0.25 * power * (a + (1.0 - a) * (p + 1.0) * exp2(p * log2(max(q, 1e-12))));
+    const float square = dot(m1, m1);
+    const float inverse = inversesqrt(max(square, 1e-30));
+    const float k = saturate(square * inverse / max(power, 1e-30));
+    const float q = saturate(0.5 + 0.5 * inverse * dot(m1, n));
+    const float lobe = q * exp2(2.0 * k * log2(max(q, 1e-30)));
+    return 0.25 * power * ((1.0 - k) / (1.0 + k) + 4.0 * k * lobe);
 }
 
 vec3 sh_irradiance_nonlinear(ShMomentsL1 m, vec3 n) {
