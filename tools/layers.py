@@ -1,4 +1,4 @@
-#!/ usr / bin / env python3
+#!/usr/bin/env python3
 """Checks the order of the layers and that every third-party library is included by one source file. Fatal on a breach.
 
 A file may include headers of its own layer or a lower one. Layers, lowest first: see `layer_of`. Prints one line a breach.
@@ -10,12 +10,12 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
-#The folders of compiler / in the order of the data : each may include itself and what stands before it.Files directly in
-#compiler / are the pass.
+# The folders of compiler/ in the order of the data: each may include itself and what stands before it. Files directly in
+# compiler/ are the pass.
 ORDER = ["base", "runtime", "manifest", "space", "split", "reflect", "toolchain", "modules", "translate", "interfaces", "table", "pass",
          "bake", "validate", "device", "report"]
 
-#Third - party header prefix->the files that may include it.
+# Third-party header prefix -> the files that may include it.
 THIRD_PARTY = {
     "xxhash": {"compiler/base/xxh3.cpp"},
     "openssl/": {"compiler/base/sha256.cpp"},

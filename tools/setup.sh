@@ -14,6 +14,7 @@ packages=(
   # tests and checks
   libgtest-dev libgmock-dev libbenchmark-dev glslang-tools glslc spirv-cross clang clang-format clang-tidy libclang-rt-14-dev
   python3 python3-yaml python3-jsonschema git make
+  chromium chromium-driver
 )
 bench=(qt6-shader-baker)
 for argument in "$@"; do

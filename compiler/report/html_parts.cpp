@@ -22,7 +22,7 @@ button { font: inherit; color: inherit; background: none; border: 1px solid var(
 button[aria-selected=true] { border-color: var(--accent); color: var(--accent); font-weight: 600; }
 .plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 420px), 1fr)); gap: 12px; }
 svg.plot { width: 100%; height: auto; display: block; }
-svg text { font-family: system-ui, sans-serif; font-size: 11px; fill: var(--ink); }
+svg text { font-family: system-ui, sans-serif; font-size: 12px; fill: var(--ink); }
 svg .label { paint-order: stroke; stroke: var(--panel); stroke-width: 3px; stroke-linejoin: round; }
 svg .title { font-size: 13px; font-weight: 600; } svg .tick, svg .axis { fill: var(--faint); }
 svg .grid { stroke: var(--line); } svg .zero { stroke-dasharray: 3 3; }

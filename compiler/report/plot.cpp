@@ -9,7 +9,7 @@ namespace kiln::report {
 
 namespace {
 
-constexpr double width = 480, height = 420, left = 62, right = 16, top = 34, bottom = 48;
+constexpr double width = 430, height = 400, left = 58, right = 16, top = 34, bottom = 48;
 constexpr double least_time = 0.02;  // ns: below, a difference of two loops says nothing
 
 std::string number(double v) {
@@ -62,7 +62,7 @@ std::string escaped(const std::string& text) {
 Box label_size(const std::string& label) {
     size_t letters = 0;
     for (const char c : label) letters += (static_cast<unsigned char>(c) & 0xc0u) != 0x80u ? 1 : 0;
-    return {0, 0, 6.6 * static_cast<double>(letters) + 4.0, 14.0};
+    return {0, 0, 7.0 * static_cast<double>(letters) + 4.0, 14.0};
 }
 
 std::vector<Box> place_labels(const std::vector<std::string>& labels, const std::vector<std::pair<double, double>>& points,

@@ -22,6 +22,13 @@ TEST(Functions, BlinnPhong) {
         },
         unit("n"), hemisphere("v", "n"), hemisphere("l", "n"), colour("diffuse"), colour("specular"),
         number("shininess", logarithmic(0.5, 4096).also({1, 2048})));
+    brdf.test(
+            "blinn_phong(n, v, l, diffuse, specular, shininess)",
+            [](auto n, auto v, auto l, auto diffuse, auto specular, auto shininess) {
+                return blinn_phong(n, v, l, diffuse, specular, shininess);
+            },
+            unit("n"), unit("v"), unit("l"), colour("diffuse"), colour("specular"), number("shininess", either_sign(1, 1e6)))
+        .named("blinn_phong_any_direction");
     brdf.run();
 }
 

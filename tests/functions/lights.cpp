@@ -13,7 +13,7 @@ TEST(Functions, Lights) {
         "distance_attenuation(distance_squared, range)",
         [](auto distance_squared, auto range) { return distance_attenuation(distance_squared, range); },
         number("distance_squared", logarithmic(1e-6, 1e6).also({1e-4}).with({0, 1e-20, 1e-40, 1e10})),
-        number("range", logarithmic(1e-2, 1e3)));
+        number("range", logarithmic(1e-2, 1e3).with({1e-7, 1e-6, 1e-5})));
     lights.test(
         "cone_attenuation(cos_angle, cos_inner, cos_outer)",
         [](auto cos_angle, auto cos_inner, auto cos_outer) { return cone_attenuation(cos_angle, cos_inner, cos_outer); },

@@ -12,6 +12,9 @@ TEST(Functions, Math) {
         "saturate(x)", [](auto x) { return saturate(x); }, number("x", finite()));
     math.test(
         "max_component(c)", [](auto c) { return max_component(c); }, vector3("c", finite()));
+    math.test(
+            "pi * x", [](auto x) { return decltype(x)(pi) * x; }, number("x", linear(-4, 4)))
+        .named("pi");
     math.run();
 }
 

@@ -60,6 +60,16 @@ TEST(Functions, ShadowMap) {
             std::sort(a, a + 3);
             return a[1] > 0.75 * a[2];
         });
+    shadow
+        .test(
+            "shadow_factor_cube(cube, vec3(0.0, -z, 0.0), near, far, bias)",
+            [&faces](auto z, auto near, auto far, auto bias) {
+                using T = decltype(z);
+                return shadow_factor_cube(faces, Vec3<T>{T(0), -z, T(0)}, near, far, bias);
+            },
+            number("z", values({0.125, 0.25, 0.5, 1, 2, 4, 8, 16})), number("near", values({0.25, 0.5, 1})),
+            number("far", values({2, 4, 8})), number("bias", linear(0, 0.01)))
+        .named("shadow_factor_cube_at_the_ends");
     shadow.run();
 }
 

@@ -33,7 +33,8 @@ int cube_face(vec3 d) {
     return a.z >= a.x && a.z >= a.y ? z_face : a.y >= a.x ? y_face : x_face;
 }
 
-// Where d pierces `face`, in [-1, 1]^2, u to the right and v down as texels lie. d: not 0, on that face.
+// Where d pierces `face`, in [-1, 1]^2, u to the right and v down as texels lie. d: on that face, its largest
+// component at least 1e-30.
 vec2 cube_face_coordinates(vec3 d, int face) {
     const vec2 x_side = vec2(face == 0 ? -d.z : d.z, -d.y);
     const vec2 y_side = vec2(d.x, face == 2 ? d.z : -d.z);

@@ -8,7 +8,7 @@ namespace kiln::reference {
 
 template <class T>
 Vec3<T> environment_reflection(const Vec3<T>& n, const Vec3<T>& v) {
-    return reflect(-v, n);
+    return n * (T(2) * dot(n, v)) - v;
 }
 template <class T>
 Vec3<T> environment_reflection_lecture(const Vec3<T>& n, const Vec3<T>& v) {
@@ -86,13 +86,14 @@ inline double cube_rectangle_solid_angle(const Vec2<double>& low, const Vec2<dou
     return corner(high.x, high.y) - corner(low.x, high.y) - corner(high.x, low.y) + corner(low.x, low.y);
 }
 
-// u from the azimuth, v from the angle to +y; 0.5 at the poles.
+// u from the azimuth, v from the angle to +y. u is 0.5 within 1e-7 of a pole, where the azimuth has no digits left.
 template <class T>
 Vec2<T> equirect_uv(const Vec3<T>& d) {
-    const Vec2<T> flat{d.x, d.z};
-    const bool pole = value(d.x) == 0.0 && value(d.z) == 0.0;
-    const T azimuth = pole ? T(0) : atan(d.z, d.x);
-    return {azimuth / T(2.0 * pi) + T(0.5), (pole ? (value(d.y) < 0.0 ? T(pi) : T(0)) : atan(length(flat), d.y)) / T(pi)};
+    const Vec3<T> s = d / max(max(abs(d.x), abs(d.y)), max(abs(d.z), T(1e-30)));
+    const T horizontal = sqrt(s.x * s.x + s.z * s.z);
+    const bool pole = value(horizontal) < 1e-7;
+    const T azimuth = pole ? T(0) : atan(s.z, s.x);
+    return {azimuth / T(2.0 * pi) + T(0.5), atan(horizontal, s.y) / T(pi)};
 }
 template <class T>
 Vec3<T> equirect_direction(const Vec2<T>& uv) {

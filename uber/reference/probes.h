@@ -43,22 +43,30 @@ Vec4<T> normalize_weights(const Vec4<T>& weights) {
     const Vec4<T> w = map(weights, [](const T& x) { return max(x, T(0)); });
     const T largest = max(max(w.x, w.y), max(w.z, w.w));
     if (!(value(largest) > 1e-30)) return {T(0.25), T(0.25), T(0.25), T(0.25)};
-    return w / (w.x + w.y + w.z + w.w);
+    const Vec4<T> scaled = w / largest;
+    return scaled / (scaled.x + scaled.y + scaled.z + scaled.w);
 }
 
-// Volumes of the four tetrahedra that p makes with the faces, over the whole; by inverse squares when the whole is flat.
+// Barycentric coordinates from cofactors; by inverse squares when the volume is below 1e-5 of the longest edge's cube.
 template <class T>
 Vec4<T> tetrahedron_weights(const Vec3<T>& p, const Vec3<T>& a, const Vec3<T>& b, const Vec3<T>& c, const Vec3<T>& d) {
-    const auto volume = [](const Vec3<T>& o, const Vec3<T>& x, const Vec3<T>& y, const Vec3<T>& z) {
-        return dot(x - o, cross(y - o, z - o));
-    };
-    const T whole = volume(a, b, c, d);
-    const T size = max(length(b - a), max(length(c - a), length(d - a)));
-    if (!(abs(value(whole)) > 1e-5 * value(size) * value(size) * value(size))) {
-        const auto near = [&](const Vec3<T>& q) { return T(1) / (dot(p - q, p - q) + T(1e-6) * size * size + T(1e-20)); };
+    const Vec3<T> ab = b - a, ac = c - a, ad = d - a, ap = p - a;
+    const Vec3<T> n_b = cross(ac, ad);
+    const T volume = dot(ab, n_b), size = sqrt(max(dot(ab, ab), max(dot(ac, ac), dot(ad, ad))));
+    if (!(abs(volume) > T(1e-5) * size * size * size)) {
+        const auto near = [&](const Vec3<T>& q) { return T(1) / (dot(p - q, p - q) + (T(1e-6) * size * size + T(1e-20))); };
         return normalize_weights(Vec4<T>{near(a), near(b), near(c), near(d)});
     }
-    return Vec4<T>{volume(p, b, c, d), volume(a, p, c, d), volume(a, b, p, d), volume(a, b, c, p)} / whole;
+    const T w_b = dot(ap, n_b) / volume, w_c = dot(ap, cross(ad, ab)) / volume, w_d = dot(ap, cross(ab, ac)) / volume;
+    return {T(1) - w_b - w_c - w_d, w_b, w_c, w_d};
+}
+// The textbook form, for a tetrahedron that is not flat: volumes of the four tetrahedra that p makes with the faces.
+inline Vec4<double> tetrahedron_weights_textbook(const Vec3<double>& p, const Vec3<double>& a, const Vec3<double>& b,
+                                                 const Vec3<double>& c, const Vec3<double>& d) {
+    const auto volume = [](const Vec3<double>& o, const Vec3<double>& x, const Vec3<double>& y, const Vec3<double>& z) {
+        return dot(x - o, cross(y - o, z - o));
+    };
+    return Vec4<double>{volume(p, b, c, d), volume(a, p, c, d), volume(a, b, p, d), volume(a, b, c, p)} / volume(a, b, c, d);
 }
 
 template <class T>
@@ -76,18 +84,15 @@ ShMomentsL1<T> sh_add(const ShMomentsL1<T>& sum, const ShMomentsL1<T>& sh, const
     return {sum.m0 + sh.m0 * weight, sum.m1_y + sh.m1_y * weight, sum.m1_z + sh.m1_z * weight, sum.m1_x + sh.m1_x * weight};
 }
 
-// Where the ray leaves the box, by slabs: walls that it runs parallel to do not bound it.
+// Where the ray leaves the box, by slabs: the nearest of three walls ahead. One that it runs along is 1e20 away.
 template <class T>
 Vec3<T> box_projected_direction(const Vec3<T>& position, const Vec3<T>& direction, const Vec3<T>& box_min, const Vec3<T>& box_max,
                                 const Vec3<T>& probe) {
-    T t = T(1e26);
-    const auto slab = [&](const T& p, const T& d, const T& low, const T& high) {
-        if (value(d) == 0.0) return;
-        t = min(t, max((value(d) < 0.0 ? low - p : high - p) / d, T(0)));
+    const auto slab = [](const T& p, const T& d, const T& low, const T& high) {
+        return max(value(d) < 0.0 ? p - low : high - p, T(0)) / max(abs(d), T(1e-20));
     };
-    slab(position.x, direction.x, box_min.x, box_max.x);
-    slab(position.y, direction.y, box_min.y, box_max.y);
-    slab(position.z, direction.z, box_min.z, box_max.z);
+    const T t = min(min(slab(position.x, direction.x, box_min.x, box_max.x), slab(position.y, direction.y, box_min.y, box_max.y)),
+                    slab(position.z, direction.z, box_min.z, box_max.z));
     return position + direction * t - probe;
 }
 

@@ -11,6 +11,15 @@ Vec3<T> decode_sh_ratio(const Vec3<T>& texel) {
     return texel * T(2) - splat3(T(1));
 }
 
+template <class T>
+Vec3<T> encode_sh_ratio(const Vec3<T>& m0, const Vec3<T>& m1) {
+    return saturate(splat3(T(0.5)) + m1 * T(0.5) / max(m0, splat3(T(1e-20))));
+}
+template <class T>
+Vec3<T> decode_flat_lightmap(const Vec3<T>& texel, const T& range) {
+    return texel * range;
+}
+
 // E(n) = m0 / 4 + (m1 . n) / 2 from raw moments, m1 given as m1 / m0; not below 0.
 template <class T>
 Vec3<T> sh_l1_irradiance(const Vec3<T>& m0, const Vec3<T>& ratio_y, const Vec3<T>& ratio_z, const Vec3<T>& ratio_x,

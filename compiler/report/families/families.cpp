@@ -2,6 +2,8 @@
 
 namespace kiln::report {
 
-std::vector<Family> all_families(bool quick) { return {diffuse_family(quick), fresnel_family(quick), visibility_family(quick)}; }
+std::vector<Family> all_families(bool quick) {
+    return {diffuse_family(quick), fresnel_family(quick), visibility_family(quick), shadow_family(quick), hair_family(quick)};
+}
 
 }  // namespace kiln::report

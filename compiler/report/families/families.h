@@ -7,6 +7,8 @@ namespace kiln::report {
 
 Family diffuse_family(bool quick);
 Family fresnel_family(bool quick);
+Family hair_family(bool quick);
+Family shadow_family(bool quick);
 Family visibility_family(bool quick);
 
 }  // namespace kiln::report

@@ -117,19 +117,17 @@ Point point_at(vec2 u) {
         m.scene_glsl["albedo"] = include + head + body + "\n}\n" + albedo_text;
         f.members.push_back(m);
     };
-    member("quarter", "no masking: G = n.l n.v", "return 0.25;");
-    member("kelemen", "1 / (4 (v.h)^2): Kelemen and Szirmay-Kalos 2001", "return 0.25 / (v_dot_h * v_dot_h);");
+    const std::string forms = "#include \"smith.glsl\"\n";
+    member("quarter", "no masking: G = n.l n.v", "return visibility_implicit();", forms);
+    member("kelemen", "1 / (4 (v.h)^2): Kelemen and Szirmay-Kalos 2001", "return visibility_kelemen(v_dot_h);", forms);
     member("karis_direct", "Schlick-Smith, k = (r + 1)^2 / 8: Karis 2013, for analytic lights",
-           "const float q = roughness + 1.0, k = q * q * 0.125;\n"
-           "    return 0.25 / ((n_dot_l * (1.0 - k) + k) * (n_dot_v * (1.0 - k) + k));");
+           "return visibility_karis_direct(n_dot_l, n_dot_v, roughness);", forms);
     member("karis_ibl", "Schlick-Smith, k = alpha / 2: Karis 2013, for environments",
-           "const float k = 0.5 * alpha;\n    return 0.25 / ((n_dot_l * (1.0 - k) + k) * (n_dot_v * (1.0 - k) + k));");
-    member("hammon", "0.5 / mix(2 n.l n.v, n.l + n.v, alpha): Hammon 2017",
-           "return 0.5 / mix(2.0 * n_dot_l * n_dot_v, n_dot_l + n_dot_v, alpha);");
+           "return visibility_karis_ibl(n_dot_l, n_dot_v, alpha);", forms);
+    member("hammon", "0.5 / mix(2 n.l n.v, n.l + n.v, alpha): Hammon 2017", "return visibility_hammon(n_dot_l, n_dot_v, alpha);",
+           forms);
     member("separable", "exact Smith of both sides, uncorrelated: Walter et al. 2007",
-           "const float a2 = alpha * alpha;\n"
-           "    return 1.0 / ((n_dot_l + sqrt(a2 + (1.0 - a2) * n_dot_l * n_dot_l)) * (n_dot_v + sqrt(a2 + (1.0 - a2) * n_dot_v "
-           "* n_dot_v)));");
+           "return visibility_separable(n_dot_l, n_dot_v, alpha);", forms);
     member("correlated", "uber/lib/ggx.glsl: height-correlated Smith, fused", "return ggx_visibility(n_dot_l, n_dot_v, alpha);",
            "#include \"ggx.glsl\"\n");
 

@@ -55,6 +55,10 @@ TEST(Probes, TetrahedronWeightsKeepLinearFields) {
         const Vec4<double> w = tetrahedron_weights(p, a, b, c, d);
         EXPECT_NEAR(w.x + w.y + w.z + w.w, 1.0, 1e-11);
         EXPECT_NEAR(length(a * w.x + b * w.y + c * w.z + d * w.w - p), 0.0, 1e-10);
+        const Vec4<double> textbook = tetrahedron_weights_textbook(p, a, b, c, d);
+        EXPECT_NEAR(w.x, textbook.x, 1e-11);
+        EXPECT_NEAR(w.y, textbook.y, 1e-11);
+        EXPECT_NEAR(w.z, textbook.z, 1e-11);
         const Vec4<double> clamped = normalize_weights(w);
         EXPECT_NEAR(clamped.x + clamped.y + clamped.z + clamped.w, 1.0, 1e-15);
         EXPECT_GE(std::min({clamped.x, clamped.y, clamped.z, clamped.w}), 0.0);
