@@ -24,6 +24,12 @@ TEST(Functions, GgxForms) {
            "ggx_distribution_cosine(n_dot_h, alpha)", [](auto c, auto a) { return ggx_distribution_cosine(c, a); },
            number("n_dot_h", linear(-0.1, 1.1).also({0, 1})), number("alpha", logarithmic(0.002, 1)))
         .truth([](double c, double a) { return ggx_distribution_textbook(std::min(std::max(c, 0.0), 1.0), a); }, 1e-9);
+    // Pushed beyond roughness 1 the same text is still a distribution.
+    ggx.test(
+           "ggx_distribution(n, h, alpha)", [](auto n, auto a, auto h) { return ggx_distribution(n, h, a); }, unit("n"),
+           number("alpha", linear(1, 16)), near("h", "n", 1.5))
+        .skip([](auto n, double, auto h) { return dot(n, h) < 0; })
+        .named("ggx_distribution_pushed");
     // How far the forms are from |h - n|^2 on the device: the cross product by 1.2e-7 / alpha + 1e-6, and |h - n|^2 itself
     // by 2e-6. The cosine of fp32 vectors is off by half an ulp or so, which the distribution multiplies by 1 / alpha^2.
     ggx.declare(
