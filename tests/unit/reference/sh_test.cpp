@@ -153,6 +153,21 @@ TEST(Sh, RatiosAreNotLinear) {
     EXPECT_NEAR(sh_irradiance_from_moments(mid, up).x - lightmap.x, 0.495 / 2, 1e-15);
 }
 
+// Also for moments that no light has: negative m0, m1 longer than m0, nothing at all.
+TEST(Sh, NonNegativeFormsStayThere) {
+    for (const double m0 : {-2.0, 0.0, 1e-30, 1.0, 1e6}) {
+        for (const double m1 : {0.0, 1e-20, 0.3, 1.0, 50.0}) {
+            const ShMomentsL1<double> m{splat3(m0), splat3(0.6 * m1), splat3(-0.8 * m1), splat3(0.0)};
+            for (const double c : {-1.0, -0.6, 0.0, 0.8, 1.0}) {
+                const double clamped = sh_irradiance_clamped(m, at(c)).x, nonlinear = sh_irradiance_nonlinear(m, at(c)).x;
+                EXPECT_GE(clamped, 0.0);
+                EXPECT_GE(nonlinear, 0.0);
+                EXPECT_LE(nonlinear, std::max(m0, 0.0) * (1.0 + 1e-12)) << "k is held at 1, where E is at most m0";
+            }
+        }
+    }
+}
+
 TEST(Sh, QuadraticFormIsTheSum) {
     ShL2<double> sh;
     std::array<double, 9> channel{};
