@@ -63,23 +63,37 @@ size_t floats_of(const std::vector<Field>& fields) {
     return n;
 }
 
-std::string kernel_text(Job job, const std::vector<Field>& fields, const std::vector<Resource>& resources,
-                        const std::string& scene, const std::string& member) {
-    const size_t stride = floats_of(fields);
+namespace {
+
+std::string head(const std::vector<Resource>& resources, bool points) {
     std::string t = "#version 450\nlayout(local_size_x = " + std::to_string(group_size) + ") in;\n";
     t += "layout(push_constant) uniform Draw { uvec4 kiln_draw; };\n";
     t += "layout(std430, set = 0, binding = 0) buffer Results { float kiln_results[]; };\n";
-    if (job == Job::picture) t += "layout(std430, set = 0, binding = 1) readonly buffer Given { float kiln_points[]; };\n";
+    if (points) t += "layout(std430, set = 0, binding = 1) readonly buffer Given { float kiln_points[]; };\n";
     for (size_t i = 0; i < resources.size(); ++i) {
         const bool block = resources[i].declaration.find('{') != std::string::npos;
         const char* const layout = !block ? "" : resources[i].declaration.starts_with("uniform") ? "std140, " : "std430, ";
-        t += std::string("layout(") + layout + "set = 0, binding = " + std::to_string(i + 2) + ") " + resources[i].declaration +
-             ";\n";
+        t += std::string("layout(") + layout + "set = 0, binding = " + std::to_string(i + 2) + ") " + resources[i].declaration + ";\n";
     }
+    return t + common;
+}
+
+}  // namespace
+
+std::string bake_text(const std::vector<Resource>& resources, const std::string& functions) {
+    return head(resources, false) + functions +
+           "\nvoid main() {\n    const uint i = gl_GlobalInvocationID.x;\n    if (i >= kiln_draw.x * kiln_draw.y) return;\n"
+           "    const vec4 c = texel(i);\n"
+           "    for (uint k = 0u; k < 4u; ++k) kiln_results[4u * i + k] = c[k];\n}\n";
+}
+
+std::string kernel_text(Job job, const std::vector<Field>& fields, const std::vector<Resource>& resources, const std::string& scene,
+                        const std::string& member) {
+    const size_t stride = floats_of(fields);
+    std::string t = head(resources, job == Job::picture);
     t += "struct Point {";
     for (const Field& f : fields) t += " " + f.type + " " + f.name + ";";
     t += " };\n";
-    t += common;
     t += scene + "\n";
     if (job == Job::picture || job == Job::timing) t += member + "\n";
     if (job == Job::baseline || job == Job::timing) {

@@ -33,6 +33,9 @@ enum class Job : uint8_t {
 std::string kernel_text(Job job, const std::vector<Field>& fields, const std::vector<Resource>& resources,
                         const std::string& scene, const std::string& member);
 
+// A bake: results[4 i …] = texel(i), i < width * height of the draw, with texel given by `functions`: vec4 texel(uint i).
+std::string bake_text(const std::vector<Resource>& resources, const std::string& functions);
+
 inline constexpr uint32_t group_size = 64;
 
 struct Kernel {
