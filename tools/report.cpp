@@ -56,6 +56,7 @@ std::string summary(const Report& report) {
                 out += "  reference of " + f.family.scenes[s].name + ": standard error " + digits(f.standard_errors[s]) +
                        " of the mean\n";
         for (const Judged& j : f.judged) out += "  " + j.words + "\n";
+        for (const std::string& remark : f.remarks) out += "  " + remark + "\n";
     }
     return out;
 }

@@ -56,6 +56,9 @@ std::string report_json(const Report& report, const std::vector<Budget>& budgets
         json.end();
         json.key("expectations").array();
         for (const Judged& j : f.judged) json.object().text("verdict", name_of(j.verdict)).text("words", j.words).end();
+        json.end();
+        json.key("remarks").array();
+        for (const std::string& remark : f.remarks) json.text(remark);
         json.end().end();
     }
     json.end();

@@ -10,6 +10,8 @@ namespace kiln::report {
 
 namespace {
 
+constexpr double most_loops = 16384;
+
 Bytes bytes_of(const void* data, size_t size) {
     Bytes out(size);
     if (size != 0) std::memcpy(out.data(), data, size);
@@ -90,15 +92,24 @@ public:
             KILN_TRY(status_of(*output));
             if (output->samples_ns.empty()) return environment_error("the device gave no times back");
             const double ms = 1e-6 * static_cast<double>(*std::min_element(output->samples_ns.begin(), output->samples_ns.end()));
-            if (options.repeats == repeats && (ms >= least_ms || draw.loops >= 1u << 28)) {
+            if (options.repeats == repeats && (ms >= least_ms || draw.groups >= 1u << 16)) {
                 Timed out;
                 out.first_ms = output->first_ms;
                 for (const uint64_t ns : output->samples_ns) out.ms.push_back(1e-6 * static_cast<double>(ns));
                 return out;
             }
-            // A dispatch of few loops is mostly its own overhead: grow in steps until the loop dominates.
+            // A dispatch of few loops is mostly its own overhead: grow in steps until the loop dominates. llvmpipe ends every
+            // loop of a shader after 65535 turns in all, so more pixels are taken where more turns would be too many.
             const double factor = std::clamp(1.15 * least_ms / std::max(ms, 1e-4), 1.0, 64.0);
-            draw.loops = static_cast<uint32_t>(std::ceil(draw.loops * factor));
+            const double loops = std::ceil(draw.loops * factor);
+            if (loops > most_loops) {
+                const double more = std::ceil(loops / most_loops);
+                draw.groups *= static_cast<uint32_t>(more);
+                draw.results *= static_cast<size_t>(more);
+                draw.loops = static_cast<uint32_t>(std::ceil(loops / more));
+            } else {
+                draw.loops = static_cast<uint32_t>(loops);
+            }
             options.repeats = factor < 64.0 ? repeats : 2;
             if (interrupted.load()) return environment_error("interrupted");
         }

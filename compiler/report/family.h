@@ -11,6 +11,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -64,6 +65,7 @@ struct Scene {
     std::vector<Resource> resources;
     std::string truth;  // in words: closed form, quadrature …
     std::function<Reference(const Points&, const Effort&)> reference;
+    std::string truth_member;  // in place of `reference`: this member's picture
 };
 
 // Runs compute shaders for whoever bakes a map; bench.h has the real one.
@@ -75,6 +77,9 @@ struct Member {
     std::function<Result<std::vector<Resource>>(size_t scene, Bench& bench, const Effort& effort)> resources = {};
     std::map<std::string, std::string> scene_glsl = {};  // by scene: put before `glsl`
 };
+
+// Least ns a pixel of a member in a scene, by their names.
+using TimeOf = std::function<std::optional<double>(const std::string& member, const std::string& scene)>;
 
 struct Family {
     unsigned number = 0;
@@ -89,6 +94,8 @@ struct Family {
     bool time_every_scene = false;
     std::string region;  // what the scenes' region is, in words
     std::vector<Expectation> expectations;
+    // Further sentences that follow from the times: one a line.
+    std::function<std::vector<std::string>(const TimeOf& ns)> remarks;
 };
 
 // A closed form a pixel, spread over the effort's threads.

@@ -142,7 +142,13 @@ std::string section(const FamilyReport& f) {
     }
     out += "<details open><summary>Expected and found</summary><ul class=\"verdicts\">";
     for (const Judged& j : f.judged) out += "<li class=\"" + std::string(name_of(j.verdict)) + "\">" + escaped(j.words) + "</li>";
-    return out + "</ul></details></section>";
+    out += "</ul>";
+    if (!f.remarks.empty()) {
+        out += "<ul>";
+        for (const std::string& r : f.remarks) out += "<li>" + escaped(r) + "</li>";
+        out += "</ul>";
+    }
+    return out + "</details></section>";
 }
 
 }  // namespace

@@ -73,7 +73,8 @@ std::string head(const std::vector<Resource>& resources, bool points) {
     for (size_t i = 0; i < resources.size(); ++i) {
         const bool block = resources[i].declaration.find('{') != std::string::npos;
         const char* const layout = !block ? "" : resources[i].declaration.starts_with("uniform") ? "std140, " : "std430, ";
-        t += std::string("layout(") + layout + "set = 0, binding = " + std::to_string(i + 2) + ") " + resources[i].declaration + ";\n";
+        t += std::string("layout(") + layout + "set = 0, binding = " + std::to_string(i + 2) + ") " + resources[i].declaration +
+             ";\n";
     }
     return t + common;
 }
@@ -87,8 +88,8 @@ std::string bake_text(const std::vector<Resource>& resources, const std::string&
            "    for (uint k = 0u; k < 4u; ++k) kiln_results[4u * i + k] = c[k];\n}\n";
 }
 
-std::string kernel_text(Job job, const std::vector<Field>& fields, const std::vector<Resource>& resources, const std::string& scene,
-                        const std::string& member) {
+std::string kernel_text(Job job, const std::vector<Field>& fields, const std::vector<Resource>& resources,
+                        const std::string& scene, const std::string& member) {
     const size_t stride = floats_of(fields);
     std::string t = head(resources, job == Job::picture);
     t += "struct Point {";

@@ -94,7 +94,16 @@ public:
         auto values = bench_.run(*kernel, scene.resources, draw);
         KILN_TRY(values);
         out.points.values = std::move(*values);
-        out.truth = scene.reference(out.points, effort_);
+        if (scene.reference) {
+            out.truth = scene.reference(out.points, effort_);
+        } else {
+            const auto of = std::find_if(family.members.begin(), family.members.end(),
+                                         [&](const Member& m) { return m.name == scene.truth_member; });
+            if (of == family.members.end()) return environment_error("nothing says what is true");
+            auto picture = draw_picture(family, static_cast<size_t>(&scene - family.scenes.data()), *of, out.points);
+            KILN_TRY(picture);
+            out.truth.picture = std::move(picture->picture);
+        }
         if (interrupted.load()) return stopped();
         return out;
     }
@@ -105,36 +114,55 @@ public:
         Draw draw = timed(scene);
         const auto ms = bench_.time(*kernel, scene.resources, draw, repeats, least_ms);
         KILN_TRY(ms);
-        return *std::min_element(ms->ms.begin(), ms->ms.end()) * 1e6 / (double{timed_pixels} * draw.loops);
+        return *std::min_element(ms->ms.begin(), ms->ms.end()) * 1e6 / (double{group_size} * draw.groups * draw.loops);
+    }
+
+    struct Drawn {
+        Picture picture;
+        std::vector<Resource> resources;
+        std::string glsl;
+        uint64_t bytes = 0, spirv = 0, operations = 0;
+    };
+    Result<Drawn> draw_picture(const Family& family, size_t scene_index, const Member& member, const Points& points) {
+        const Scene& scene = family.scenes[scene_index];
+        const auto named = [&](const Error& e) { return Error{e.fault, family.name + ", " + member.name + ": " + e.message}; };
+        Drawn out;
+        out.resources = scene.resources;
+        if (member.resources) {
+            auto own = member.resources(scene_index, bench_, effort_);
+            if (!own.ok()) return named(own.error());
+            for (Resource& r : *own) {
+                out.bytes += r.bytes;
+                out.resources.push_back(std::move(r));
+            }
+        }
+        const auto extra = member.scene_glsl.find(scene.name);
+        out.glsl = (extra == member.scene_glsl.end() ? "" : extra->second + "\n") + member.glsl;
+        auto kernel = build(Job::picture, family, out.resources, scene.glsl, out.glsl);
+        if (!kernel.ok()) return named(kernel.error());
+        out.spirv = kernel->bytes;
+        out.operations = kernel->operations;
+        Draw draw = whole(scene);
+        draw.points = &points.values;
+        draw.results = size_t{3} * scene.width * scene.height;
+        const auto values = bench_.run(*kernel, out.resources, draw);
+        if (!values.ok()) return named(values.error());
+        out.picture = Picture(scene.width, scene.height);
+        for (size_t i = 0; i < out.picture.rgb.size(); ++i) out.picture.rgb[i] = static_cast<double>((*values)[i]);
+        return out;
     }
 
     // `baseline_ns`: time it, too.
     Result<Measured> member(const Family& family, size_t scene_index, const Member& member, const Prepared& stage,
                             const double* baseline_ns) {
         const Scene& scene = family.scenes[scene_index];
-        std::vector<Resource> resources = scene.resources;
+        auto drawn = draw_picture(family, scene_index, member, stage.points);
+        KILN_TRY(drawn);
         Measured out;
-        if (member.resources) {
-            auto own = member.resources(scene_index, bench_, effort_);
-            KILN_TRY(own);
-            for (Resource& r : *own) {
-                out.bytes += r.bytes;
-                resources.push_back(std::move(r));
-            }
-        }
-        const auto extra = member.scene_glsl.find(scene.name);
-        const std::string glsl = (extra == member.scene_glsl.end() ? "" : extra->second + "\n") + member.glsl;
-        auto kernel = build(Job::picture, family, resources, scene.glsl, glsl);
-        if (!kernel.ok()) return Error{kernel.error().fault, family.name + ", " + member.name + ": " + kernel.error().message};
-        out.spirv = kernel->bytes;
-        out.operations = kernel->operations;
-        Draw draw = whole(scene);
-        draw.points = &stage.points.values;
-        draw.results = size_t{3} * scene.width * scene.height;
-        const auto values = bench_.run(*kernel, resources, draw);
-        if (!values.ok()) return Error{values.error().fault, family.name + ", " + member.name + ": " + values.error().message};
-        Picture x(scene.width, scene.height);
-        for (size_t i = 0; i < x.rgb.size(); ++i) x.rgb[i] = static_cast<double>((*values)[i]);
+        out.bytes = drawn->bytes;
+        out.spirv = drawn->spirv;
+        out.operations = drawn->operations;
+        const Picture& x = drawn->picture;
         const Reference& truth = stage.truth;
         out.all = measure(x, truth.picture);
         out.all.flip = mean_of(hdr_flip(truth.picture, x));
@@ -151,12 +179,12 @@ public:
         out.picture = std::move(*picture);
         out.error_map = std::move(*map);
         if (baseline_ns != nullptr) {
-            auto loop = build(Job::timing, family, resources, scene.glsl, glsl);
+            auto loop = build(Job::timing, family, drawn->resources, scene.glsl, drawn->glsl);
             KILN_TRY(loop);
             Draw many = timed(scene);
-            const auto ms = bench_.time(*loop, resources, many, repeats, least_ms);
+            const auto ms = bench_.time(*loop, drawn->resources, many, repeats, least_ms);
             KILN_TRY(ms);
-            out.timing = times_of(*ms, *baseline_ns, double{timed_pixels} * many.loops);
+            out.timing = times_of(*ms, *baseline_ns, double{group_size} * many.groups * many.loops);
             out.timing.scene = scene.name;
         }
         if (interrupted.load()) return stopped();
@@ -315,6 +343,15 @@ Result<Report> run_report(const ReportOptions& options, Library& library, Toolch
                     }
                     return std::nullopt;
                 }));
+        if (report.family.remarks)
+            report.remarks =
+                report.family.remarks([&](const std::string& member, const std::string& scene) -> std::optional<double> {
+                    for (size_t i = 0; i < report.family.members.size(); ++i)
+                        for (size_t s = 0; s < report.family.scenes.size(); ++s)
+                            if (report.family.members[i].name == member && report.family.scenes[s].name == scene)
+                                return report.scenes[s][i].timing.min;
+                    return std::nullopt;
+                });
         out.families.push_back(std::move(report));
     }
     return out;

@@ -36,6 +36,7 @@ struct FamilyReport {
     std::vector<Bytes> references;              // PNG a scene
     std::vector<double> standard_errors;        // a scene
     std::vector<Judged> judged;
+    std::vector<std::string> remarks;
 };
 
 struct Report {

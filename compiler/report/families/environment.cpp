@@ -1,7 +1,7 @@
 // Specular light from an environment: blurred maps and tables against importance sampling and the integral.
+#include "compiler/report/bench.h"
 #include "compiler/report/families/families.h"
 #include "compiler/report/kernel.h"
-#include "compiler/report/bench.h"
 #include "compiler/report/resources.h"
 #include "uber/reference/split_sum_quadrature.h"
 
@@ -22,16 +22,19 @@ double lamp(const Vec3d& d, const Vec3d& at, double narrow) { return std::exp(na
 std::vector<Sky> skies() {
     return {{"studio", "three wide lamps in a grey room", "",
              [](const Vec3d& d) {
-                 return reference::splat3(0.2) + Vec3d{6, 5, 4} * lamp(d, {0.5, 0.7, 0.5}, 30) + Vec3d{1, 2, 4} * lamp(d, {-0.9, 0.1, 0.3}, 20) +
-                        Vec3d{2, 2, 2} * lamp(d, {0.1, -0.9, 0.4}, 10);
+                 return reference::splat3(0.2) + Vec3d{6, 5, 4} * lamp(d, {0.5, 0.7, 0.5}, 30) +
+                        Vec3d{1, 2, 4} * lamp(d, {-0.9, 0.1, 0.3}, 20) + Vec3d{2, 2, 2} * lamp(d, {0.1, -0.9, 0.4}, 10);
              }},
             {"sun", "a sky, a ground and a sun some degrees wide", "",
              [](const Vec3d& d) {
                  const double up = 0.5 + 0.5 * std::tanh(6.0 * d.y);
-                 return Vec3d{0.25, 0.2, 0.15} * (1.0 - up) + Vec3d{0.5, 0.7, 1.0} * up + Vec3d{300, 280, 240} * lamp(d, {0.4, 0.6, 0.6}, 1500);
+                 return Vec3d{0.25, 0.2, 0.15} * (1.0 - up) + Vec3d{0.5, 0.7, 1.0} * up +
+                        Vec3d{300, 280, 240} * lamp(d, {0.4, 0.6, 0.6}, 1500);
              }},
-            {"checker", "soft squares of 1.9 and 0.1", "",
-             [](const Vec3d& d) { return reference::splat3(1.0 + 0.9 * std::tanh(6.0 * std::sin(7.0 * d.x) * std::sin(7.0 * d.y + 0.7) * std::sin(7.0 * d.z + 0.3))); }}};
+            {"checker", "soft squares of 1.9 and 0.1", "", [](const Vec3d& d) {
+                 return reference::splat3(
+                     1.0 + 0.9 * std::tanh(6.0 * std::sin(7.0 * d.x) * std::sin(7.0 * d.y + 0.7) * std::sin(7.0 * d.z + 0.3)));
+             }}};
 }
 
 const char* const point_text = R"(
@@ -108,7 +111,8 @@ const std::vector<std::vector<float>>& box_mips(Bakes& bakes, size_t sky, const 
                 for (size_t x = 0; x < n; ++x)
                     for (size_t c = 0; c < 4; ++c) {
                         const size_t at = 4 * ((face * 2 * n + 2 * y) * 2 * n + 2 * x) + c, down = at + 4 * 2 * n;
-                        mip[4 * ((face * n + y) * n + x) + c] = 0.25f * (above[at] + above[at + 4] + above[down] + above[down + 4]);
+                        mip[4 * ((face * n + y) * n + x) + c] =
+                            0.25f * (above[at] + above[at + 4] + above[down] + above[down + 4]);
                     }
         mips.push_back(std::move(mip));
     }
@@ -125,13 +129,15 @@ Result<std::vector<std::vector<float>>> prefiltered_mips(Bakes& bakes, size_t sk
         draw.height = draw.width * 6;
         draw.results = size_t{4} * draw.width * draw.height;
         draw.groups = (draw.width * draw.height + group_size - 1) / group_size;
-        const std::string alpha = "#define ALPHA ggx_alpha(" + std::to_string(level) + ".0 / " + std::to_string(levels - 1) + ".0)\n";
-        auto mip = bench.bake(bake_text(source, "#include \"ibl_bake.glsl\"\n" + alpha +
-                                                    "vec4 texel(uint i) {\n    const int n = int(kiln_draw.x), face = int(i) / (n * n);\n"
-                                                    "    const ivec2 at = ivec2(int(i) % n, (int(i) / n) % n);\n"
-                                                    "    const vec3 d = normalize(cube_direction(face, cube_texel_centre(at, n)));\n"
-                                                    "    return vec4(prefilter_sampled(map, d, ALPHA, 1024u, true), 1.0);\n}"),
-                              source, draw);
+        const std::string alpha =
+            "#define ALPHA ggx_alpha(" + std::to_string(level) + ".0 / " + std::to_string(levels - 1) + ".0)\n";
+        auto mip = bench.bake(
+            bake_text(source, "#include \"ibl_bake.glsl\"\n" + alpha +
+                                  "vec4 texel(uint i) {\n    const int n = int(kiln_draw.x), face = int(i) / (n * n);\n"
+                                  "    const ivec2 at = ivec2(int(i) % n, (int(i) / n) % n);\n"
+                                  "    const vec3 d = normalize(cube_direction(face, cube_texel_centre(at, n)));\n"
+                                  "    return vec4(prefilter_sampled(map, d, ALPHA, 1024u, true), 1.0);\n}"),
+            source, draw);
         KILN_TRY(mip);
         mips.push_back(std::move(*mip));
     }
@@ -145,11 +151,12 @@ Result<std::vector<float>> table_of(Bakes& bakes, uint32_t size, Bench& bench) {
     draw.width = draw.height = size;
     draw.results = size_t{4} * size * size;
     draw.groups = (size * size + group_size - 1) / group_size;
-    const auto texels = bench.bake(
-        bake_text({}, "#include \"ibl_bake.glsl\"\n#include \"ibl.glsl\"\nvec4 texel(uint i) {\n"
-                      "    const vec2 at = split_sum_texel(ivec2(i % kiln_draw.x, i / kiln_draw.x), int(kiln_draw.x));\n"
-                      "    return vec4(split_sum_sampled(max(at.x, 1e-3), ggx_alpha(at.y), 4096u), 0.0, 0.0);\n}"),
-        {}, draw);
+    const auto texels =
+        bench.bake(bake_text({},
+                             "#include \"ibl_bake.glsl\"\n#include \"ibl.glsl\"\nvec4 texel(uint i) {\n"
+                             "    const vec2 at = split_sum_texel(ivec2(i % kiln_draw.x, i / kiln_draw.x), int(kiln_draw.x));\n"
+                             "    return vec4(split_sum_sampled(max(at.x, 1e-3), ggx_alpha(at.y), 4096u), 0.0, 0.0);\n}"),
+                   {}, draw);
     KILN_TRY(texels);
     for (size_t i = 0; i < texels->size(); i += 4) table.insert(table.end(), {(*texels)[i], (*texels)[i + 1]});
     return table;
@@ -162,12 +169,15 @@ Family environment_family(bool quick) {
     f.number = 2;
     f.name = "environment";
     f.title = "Specular light from an environment";
-    f.what = "Spheres of roughness 0.05, 0.1, 0.25, 0.5, 0.75 and 1 under an environment, seen from afar. Single scattering is the truth, so "
-             "the form that gives lost light back is off by what it gives.";
+    f.what =
+        "Spheres of roughness 0.05, 0.1, 0.25, 0.5, 0.75 and 1 under an environment, seen from afar. Single scattering is the "
+        "truth, so "
+        "the form that gives lost light back is off by what it gives.";
     f.primary = Metric::relmse;
     f.fields = {{"vec3", "n"}, {"float", "roughness"}};
     const Vec3d gold{1.0, 0.78, 0.34}, plastic = reference::splat3(0.04);
-    const std::vector<Setting> settings{{"studio_gold", 0, gold}, {"studio_plastic", 0, plastic}, {"sun_gold", 1, gold}, {"checker_gold", 2, gold}};
+    const std::vector<Setting> settings{
+        {"studio_gold", 0, gold}, {"studio_plastic", 0, plastic}, {"sun_gold", 1, gold}, {"checker_gold", 2, gold}};
     for (const Setting& setting : settings) {
         Scene s;
         s.name = setting.name;
@@ -179,7 +189,8 @@ Family environment_family(bool quick) {
         std::snprintf(text, sizeof text, "const vec3 f0 = vec3(%.9g, %.9g, %.9g);\n", setting.f0.x, setting.f0.y, setting.f0.z);
         s.glsl = std::string(text) + point_text;
         const int nodes = quick ? 32 : 64;
-        s.truth = "midpoint quadrature over " + std::to_string(2 * nodes * nodes) + " half vectors of the lobe, in double precision";
+        s.truth =
+            "midpoint quadrature over " + std::to_string(2 * nodes * nodes) + " half vectors of the lobe, in double precision";
         s.reference = [sky, setting, nodes, w = s.width, h = s.height](const Points& points, const Effort& effort) {
             return per_point(points, w, h, effort, [&](size_t i) {
                 return reflected(sky, normalize(points.vector(i, 0)), points.scalar(i, 3), setting.f0, nodes);
@@ -201,7 +212,8 @@ Family environment_family(bool quick) {
         m.resources = [=](size_t scene, Bench& bench, const Effort& effort) -> Result<std::vector<Resource>> {
             std::vector<Resource> out;
             if (map == 'b') {
-                out.push_back(cube_map("environment", TexelFormat::rgba16_float, side, box_mips(*bakes, settings[scene].sky, effort)));
+                out.push_back(
+                    cube_map("environment", TexelFormat::rgba16_float, side, box_mips(*bakes, settings[scene].sky, effort)));
             } else {
                 auto mips = prefiltered_mips(*bakes, settings[scene].sky, bench, effort);
                 KILN_TRY(mips);
@@ -218,16 +230,20 @@ Family environment_family(bool quick) {
     };
     add("mips", "plain mips of the environment times f0: no lobe, no table", 'b', 0,
         "vec3 shade(Point p) { return sample_environment(environment, environment_reflection(p.n, v), p.roughness, 8.0) * f0; }");
-    const std::string blurred = "vec3 blurred(Point p) { return sample_environment(environment, environment_reflection(p.n, v), p.roughness, " +
-                                std::to_string(levels) + ".0); }\n";
+    const std::string blurred =
+        "vec3 blurred(Point p) { return sample_environment(environment, environment_reflection(p.n, v), p.roughness, " +
+        std::to_string(levels) + ".0); }\n";
     add("fit", "prefiltered map and Karis' fit in place of the table", 'p', 0,
         blurred + "vec3 shade(Point p) { return environment_specular(blurred(p), f0, split_sum_fit(p.n.z, p.roughness)); }");
     for (const uint32_t size : {16u, 32u, 64u, 128u})
         add("table_" + std::to_string(size), "prefiltered map and split-sum table", 'p', size,
-            blurred + "vec3 shade(Point p) { return environment_specular(blurred(p), f0, split_sum_lookup(table, p.n.z, p.roughness, " +
+            blurred +
+                "vec3 shade(Point p) { return environment_specular(blurred(p), f0, split_sum_lookup(table, p.n.z, p.roughness, " +
                 std::to_string(size) + ".0)); }");
     add("multiscatter", "the same with what is lost given back", 'p', 64,
-        blurred + "vec3 shade(Point p) { return environment_specular_multiscatter(blurred(p), f0, split_sum_lookup(table, p.n.z, p.roughness, 64.0)); }");
+        blurred +
+            "vec3 shade(Point p) { return environment_specular_multiscatter(blurred(p), f0, split_sum_lookup(table, p.n.z, "
+            "p.roughness, 64.0)); }");
     const auto sampled = [&](int count, bool filtered) {
         const std::string n = std::to_string(count);
         add("is_" + n + (filtered ? "_filtered" : ""),
@@ -235,30 +251,44 @@ Family environment_family(bool quick) {
             "vec3 shade(Point p) {\n    const mat3 frame = frame_around(p.n);\n    const float a = ggx_alpha(p.roughness);\n"
             "    const uint seed = hash(floatBitsToUint(p.n.x) ^ hash(floatBitsToUint(p.n.y)));\n"
             "    const vec2 turn = vec2(unit(seed), unit(hash(seed)));\n    vec3 sum = vec3(0.0);\n"
-            "    for (uint i = 0u; i < " + n + "u; ++i) {\n"
-            "        const vec3 h = sample_ggx_half(fract(hammersley(i, " + n + "u) + turn), a), w = frame * h;\n"
-            "        const float v_dot_h = dot(v, w), n_dot_l = 2.0 * v_dot_h * h.z - p.n.z;\n"
-            "        if (n_dot_l > 0.0 && v_dot_h > 0.0) {\n"
-            "            const vec3 l = 2.0 * v_dot_h * w - v;\n"
-            "            const float weight = 4.0 * ggx_visibility(n_dot_l, p.n.z, a) * n_dot_l * v_dot_h / h.z;\n" +
-                std::string(filtered ? "            const float pdf = ggx_distribution(vec3(0.0, 0.0, 1.0), h, a) * h.z / (4.0 * v_dot_h);\n"
-                                       "            const float lod = filtered_lod(pdf, " + n + ".0, 128.0);\n"
-                                     : "            const float lod = 0.0;\n") +
-                "            sum += textureLod(environment, l, lod).rgb * fresnel_schlick(v_dot_h, f0) * weight;\n        }\n    }\n"
-                "    return sum / " + n + ".0;\n}");
+            "    for (uint i = 0u; i < " +
+                n +
+                "u; ++i) {\n"
+                "        const vec3 h = sample_ggx_half(fract(hammersley(i, " +
+                n +
+                "u) + turn), a), w = frame * h;\n"
+                "        const float v_dot_h = dot(v, w), n_dot_l = 2.0 * v_dot_h * h.z - p.n.z;\n"
+                "        if (n_dot_l > 0.0 && v_dot_h > 0.0) {\n"
+                "            const vec3 l = 2.0 * v_dot_h * w - v;\n"
+                "            const float weight = 4.0 * ggx_visibility(n_dot_l, p.n.z, a) * n_dot_l * v_dot_h / h.z;\n" +
+                std::string(
+                    filtered
+                        ? "            const float pdf = ggx_distribution(vec3(0.0, 0.0, 1.0), h, a) * h.z / (4.0 * v_dot_h);\n"
+                          "            const float lod = filtered_lod(pdf, " +
+                              n + ".0, 128.0);\n"
+                        : "            const float lod = 0.0;\n") +
+                "            sum += textureLod(environment, l, lod).rgb * fresnel_schlick(v_dot_h, f0) * weight;\n        }\n    "
+                "}\n"
+                "    return sum / " +
+                n + ".0;\n}");
     };
     for (const int n : quick ? std::vector<int>{4, 16, 64, 256} : std::vector<int>{4, 16, 64, 256, 1024}) sampled(n, false);
     for (const int n : {4, 16, 64}) sampled(n, true);
 
     f.expectations = ascending(Metric::relmse, {"is_64_filtered", "table_64", "mips"});
     for (const Expectation& e : ascending(Metric::relmse, {"table_64", "fit"})) f.expectations.push_back(e);
-    f.expectations.push_back({Metric::relmse, Relation::near, "table_64", "table_128", 1.05, "", "beyond 64 texels N = V = R is what is left"});
-    f.expectations.push_back({Metric::relmse, Relation::near, "table_16", "table_128", 1.5, "", "even a small table is not what is left"});
+    f.expectations.push_back(
+        {Metric::relmse, Relation::near, "table_64", "table_128", 1.05, "", "beyond 64 texels N = V = R is what is left"});
+    f.expectations.push_back(
+        {Metric::relmse, Relation::near, "table_16", "table_128", 1.5, "", "even a small table is not what is left"});
     for (const char* n : {"4", "16", "64"})
-        f.expectations.push_back({Metric::relmse, Relation::below, std::string("is_") + n + "_filtered", std::string("is_") + n, 1.0, "", "mips take the noise"});
+        f.expectations.push_back({Metric::relmse, Relation::below, std::string("is_") + n + "_filtered", std::string("is_") + n,
+                                  1.0, "", "mips take the noise"});
     for (const Expectation& e : ascending(Metric::relmse, {"is_256", "is_64", "is_16", "is_4"})) f.expectations.push_back(e);
-    for (const Expectation& e : ascending(Metric::time, {"mips", "table_64", "is_4_filtered", "is_16_filtered"})) f.expectations.push_back(e);
-    f.expectations.push_back({Metric::time, Relation::near, "table_16", "table_128", 1.1, "", "size of a table costs bytes, not time"});
+    for (const Expectation& e : ascending(Metric::time, {"mips", "table_64", "is_4_filtered", "is_16_filtered"}))
+        f.expectations.push_back(e);
+    f.expectations.push_back(
+        {Metric::time, Relation::near, "table_16", "table_128", 1.1, "", "size of a table costs bytes, not time"});
     return f;
 }
 

@@ -79,7 +79,8 @@ Scene scene_of(const Setting& setting, bool quick) {
     s.height = furnace ? 8 : s.width;
     char text[300];
     const double angle = setting.view * reference::pi / 180.0;
-    std::snprintf(text, sizeof text, "const float roughness = %.9g;\nconst vec3 f0 = vec3(%.9g, %.9g, %.9g), view = vec3(%.9g, 0.0, %.9g);\n",
+    std::snprintf(text, sizeof text,
+                  "const float roughness = %.9g;\nconst vec3 f0 = vec3(%.9g, %.9g, %.9g), view = vec3(%.9g, 0.0, %.9g);\n",
                   setting.roughness, 1.0, furnace ? 1.0 : gold.y, furnace ? 1.0 : gold.z, -std::sin(angle), std::cos(angle));
     s.glsl = std::string(text) + (furnace ? furnace_text : sweep_text);
     s.truth = furnace ? "a lossless mirror reflects all: 1" : "Walter et al. 2007 with Heitz 2014 in double precision";
@@ -103,11 +104,13 @@ Family specular_family(bool quick) {
     f.primary = Metric::max_rel;
     f.fields = {{"vec3", "l"}, {"vec3", "v"}};
     const std::vector<Setting> settings{
-        {"smooth", "Roughness 0.1, viewed at 45 degrees. The light's angle from left to right, its azimuth from bottom to top.", 0.1, 45.0},
+        {"smooth", "Roughness 0.1, viewed at 45 degrees. The light's angle from left to right, its azimuth from bottom to top.",
+         0.1, 45.0},
         {"glossy", "Roughness 0.3, viewed at 45 degrees. Axes as before.", 0.3, 45.0},
         {"grazing", "Roughness 0.3, viewed at 80 degrees. Axes as before.", 0.3, 80.0},
         {"rough", "Roughness 0.7, viewed at 45 degrees. Axes as before.", 0.7, 45.0},
-        {"furnace", "Uniform light on roughness 0.7, n.v from left to right; each form integrated over 1024 half vectors.", 0.7, 0.0}};
+        {"furnace", "Uniform light on roughness 0.7, n.v from left to right; each form integrated over 1024 half vectors.", 0.7,
+         0.0}};
     for (const Setting& s : settings) f.scenes.push_back(scene_of(s, quick));
 
     const auto add = [&](const std::string& name, const std::string& what, const std::string& text) -> Member& {
@@ -115,42 +118,50 @@ Family specular_family(bool quick) {
         m.name = name;
         m.what = what;
         for (const Setting& s : settings)
-            m.scene_glsl[s.name] = text + (s.view == 0.0 ? albedo_text : "vec3 shade(Point p) { return brdf(n, p.v, p.l, f0, roughness); }\n");
+            m.scene_glsl[s.name] =
+                text + (s.view == 0.0 ? albedo_text : "vec3 shade(Point p) { return brdf(n, p.v, p.l, f0, roughness); }\n");
         f.members.push_back(std::move(m));
         return f.members.back();
     };
     const std::string open = "vec3 brdf(vec3 n, vec3 v, vec3 l, vec3 f0, float roughness) {\n";
     const std::string power = "    const float a = roughness * roughness, shininess = 2.0 / (a * a) - 2.0;\n";
     add("blinn_phong_raw", "(n.h)^p as it is: Blinn 1977",
-        "#include \"blinn_phong_raw.glsl\"\n" + open + power + "    return blinn_phong_raw(n, v, l, vec3(0.0), f0, shininess);\n}\n");
+        "#include \"blinn_phong_raw.glsl\"\n" + open + power +
+            "    return blinn_phong_raw(n, v, l, vec3(0.0), f0, shininess);\n}\n");
     add("blinn_phong", "the same with the factor that keeps energy",
         "#include \"blinn_phong.glsl\"\n" + open + power + "    return blinn_phong(n, v, l, vec3(0.0), f0, shininess);\n}\n");
     add("ggx_lecture", "the lecture's code: alpha = roughness, padded denominator",
         "#include \"lecture_brdf.glsl\"\n" + open +
             "    const vec3 h = normalize(v + l);\n    const float n_dot_l = max(dot(n, l), 0.0);\n"
-            "    return specular_lecture(n_dot_l, abs(dot(n, v)), max(dot(n, h), 0.0), max(dot(v, h), 0.0), f0, roughness) * n_dot_l;\n}\n");
-    const std::string ggx = "#include \"ggx.glsl\"\n#include \"ggx_forms.glsl\"\n#include \"smith.glsl\"\n#include \"fresnel.glsl\"\n"
-                            "#include \"vectors.glsl\"\n#include \"energy.glsl\"\n#include \"ibl.glsl\"\n";
-    const std::string terms = "    const vec3 h = safe_normalize(v + l, n);\n    const float a = ggx_alpha(roughness), n_dot_l = saturate(dot(n, l));\n"
-                              "    const float n_dot_v = clamp(dot(n, v), 1e-4, 1.0);\n";
+            "    return specular_lecture(n_dot_l, abs(dot(n, v)), max(dot(n, h), 0.0), max(dot(v, h), 0.0), f0, roughness) * "
+            "n_dot_l;\n}\n");
+    const std::string ggx =
+        "#include \"ggx.glsl\"\n#include \"ggx_forms.glsl\"\n#include \"smith.glsl\"\n#include \"fresnel.glsl\"\n"
+        "#include \"vectors.glsl\"\n#include \"energy.glsl\"\n#include \"ibl.glsl\"\n";
+    const std::string terms =
+        "    const vec3 h = safe_normalize(v + l, n);\n    const float a = ggx_alpha(roughness), n_dot_l = saturate(dot(n, l));\n"
+        "    const float n_dot_v = clamp(dot(n, v), 1e-4, 1.0);\n";
     add("ggx_karis", "n.h in D, Karis' k of analytic lights",
         ggx + open + terms +
             "    return ggx_distribution_cosine(dot(n, h), a) * visibility_karis_direct(n_dot_l, n_dot_v, roughness) * "
             "fresnel_schlick(dot(v, h), f0) * n_dot_l;\n}\n");
     add("ggx_correlated", "h - n in D, height-correlated Smith",
         ggx + open + terms +
-            "    return ggx_distribution(n, h, a) * ggx_visibility(max(n_dot_l, 1e-4), n_dot_v, a) * fresnel_schlick(dot(v, h), f0) * n_dot_l;\n}\n");
+            "    return ggx_distribution(n, h, a) * ggx_visibility(max(n_dot_l, 1e-4), n_dot_v, a) * fresnel_schlick(dot(v, h), "
+            "f0) * n_dot_l;\n}\n");
     Member& scattered = add("ggx_multiscatter", "the same times 1 + f0 (1 / E - 1), E from a table",
-        ggx + open + terms +
-            "    const vec2 ab = split_sum_lookup(table, n_dot_v, roughness, 32.0);\n"
-            "    return ggx_distribution(n, h, a) * ggx_visibility(max(n_dot_l, 1e-4), n_dot_v, a) * fresnel_schlick(dot(v, h), f0) *\n"
-            "           multiscatter_scale(f0, ab.x + ab.y) * n_dot_l;\n}\n");
+                            ggx + open + terms +
+                                "    const vec2 ab = split_sum_lookup(table, n_dot_v, roughness, 32.0);\n"
+                                "    return ggx_distribution(n, h, a) * ggx_visibility(max(n_dot_l, 1e-4), n_dot_v, a) * "
+                                "fresnel_schlick(dot(v, h), f0) *\n"
+                                "           multiscatter_scale(f0, ab.x + ab.y) * n_dot_l;\n}\n");
     scattered.resources = [](size_t, Bench&, const Effort& effort) -> Result<std::vector<Resource>> {
         std::vector<float> texels(size_t{32} * 32 * 2);
         const reference::TanhSinh quadrature(16);
         effort.jobs.each(32, [&](size_t y) {
             for (size_t x = 0; x < 32; ++x) {
-                const double r = std::max(static_cast<double>(y) / 31.0, 0.045), v = std::max(static_cast<double>(x) / 31.0, 1e-3);
+                const double r = std::max(static_cast<double>(y) / 31.0, 0.045),
+                             v = std::max(static_cast<double>(x) / 31.0, 1e-3);
                 const auto ab = reference::split_sum(reference::SmithForm::height_correlated, v, r, quadrature);
                 texels[2 * (y * 32 + x)] = static_cast<float>(ab.a);
                 texels[2 * (y * 32 + x) + 1] = static_cast<float>(ab.b);
@@ -161,13 +172,15 @@ Family specular_family(bool quick) {
         sampler.mips = MipFilter::none;
         return std::vector<Resource>{picture_map("table", TexelFormat::rg32_float, 32, 32, {texels}, sampler)};
     };
-    Member& table = add("merl_table", "GGX tabulated as the MERL database does, eight bins interpolated; green from one plane",
+    Member& table = add(
+        "merl_table", "GGX tabulated as the MERL database does, eight bins interpolated; green from one plane",
         "#include \"merl.glsl\"\n#include \"fresnel.glsl\"\n#include \"vectors.glsl\"\n" + open +
             "    const vec3 h = safe_normalize(v + l, n);\n    const MerlCorners m = merl_corners(merl_coordinates(n, l, h));\n"
             "    float sum = 0.0;\n    for (int i = 0; i < 8; ++i) {\n"
             "        const bvec3 high = bvec3((i & 1) != 0, (i & 2) != 0, (i & 4) != 0);\n"
             "        const vec3 w = mix(vec3(1.0) - m.weight, m.weight, high);\n"
-            "        sum += w.x * w.y * w.z * bins[merl_index(ivec3(high.x ? m.high.x : m.low.x, high.y ? m.high.y : m.low.y, high.z ? m.high.z : m.low.z))];\n"
+            "        sum += w.x * w.y * w.z * bins[merl_index(ivec3(high.x ? m.high.x : m.low.x, high.y ? m.high.y : m.low.y, "
+            "high.z ? m.high.z : m.low.z))];\n"
             "    }\n    return sum * fresnel_schlick(dot(v, h), f0) * saturate(dot(n, l));\n}\n");
     table.resources = [settings](size_t scene, Bench&, const Effort& effort) -> Result<std::vector<Resource>> {
         std::vector<float> bins(reference::merl_plane);
@@ -176,7 +189,8 @@ Family specular_family(bool quick) {
             for (int td = 0; td < 90; ++td)
                 for (int pd = 0; pd < 180; ++pd) {
                     const auto d = reference::merl_directions({static_cast<double>(th) + 0.5, td + 0.5, pd + 0.5});
-                    const double value = d.l.z > 1e-3 && d.v.z > 1e-3 ? lobe(d.v, d.l, roughness, reference::splat3(1.0)).x / d.l.z : 0.0;
+                    const double value =
+                        d.l.z > 1e-3 && d.v.z > 1e-3 ? lobe(d.v, d.l, roughness, reference::splat3(1.0)).x / d.l.z : 0.0;
                     bins[static_cast<size_t>(reference::merl_index({static_cast<int>(th), td, pd}))] = static_cast<float>(value);
                 }
         });
@@ -184,16 +198,21 @@ Family specular_family(bool quick) {
     };
 
     for (const char* s : {"smooth", "glossy"})
-        for (Expectation& e : ascending(Metric::max_rel, {"ggx_correlated", "ggx_karis", "ggx_lecture"}, s)) f.expectations.push_back(e);
+        for (Expectation& e : ascending(Metric::max_rel, {"ggx_correlated", "ggx_karis", "ggx_lecture"}, s))
+            f.expectations.push_back(e);
     for (const char* s : {"smooth", "glossy", "grazing"})
         for (const char* m : {"ggx_karis", "ggx_correlated", "ggx_multiscatter", "merl_table"})
-            f.expectations.push_back({Metric::relmse, Relation::below, m, "ggx_lecture", 1.0, s, "alpha = roughness is the largest error below 0.7"});
+            f.expectations.push_back(
+                {Metric::relmse, Relation::below, m, "ggx_lecture", 1.0, s, "alpha = roughness is the largest error below 0.7"});
     f.expectations.push_back({Metric::max_rel, Relation::at_most, "ggx_correlated", "", 1e-3, "glossy", "rounding alone"});
-    f.expectations.push_back({Metric::relmse, Relation::below, "blinn_phong", "blinn_phong_raw", 1.0, "smooth", "raw error grows with the exponent"});
-    f.expectations.push_back({Metric::max_abs, Relation::at_most, "ggx_multiscatter", "", 0.02, "furnace", "what is lost comes back"});
+    f.expectations.push_back(
+        {Metric::relmse, Relation::below, "blinn_phong", "blinn_phong_raw", 1.0, "smooth", "raw error grows with the exponent"});
+    f.expectations.push_back(
+        {Metric::max_abs, Relation::at_most, "ggx_multiscatter", "", 0.02, "furnace", "what is lost comes back"});
     f.expectations.push_back({Metric::max_abs, Relation::below, "ggx_multiscatter", "ggx_correlated", 1.0, "furnace", ""});
     for (Expectation& e : ascending(Metric::time, {"blinn_phong_raw", "blinn_phong"}, "glossy")) f.expectations.push_back(e);
-    for (Expectation& e : ascending(Metric::time, {"ggx_karis", "ggx_correlated", "ggx_multiscatter", "merl_table"}, "glossy")) f.expectations.push_back(e);
+    for (Expectation& e : ascending(Metric::time, {"ggx_karis", "ggx_correlated", "ggx_multiscatter", "merl_table"}, "glossy"))
+        f.expectations.push_back(e);
     f.timed_scene = 1;
     return f;
 }
