@@ -187,6 +187,22 @@ Resource picture_map(const std::string& name, TexelFormat format, uint32_t width
     return image_of("uniform sampler2D " + name, std::move(image), sampler);
 }
 
+Resource volume_map(const std::string& name, TexelFormat format, uint32_t size, const std::vector<std::vector<float>>& mips) {
+    ImageData image;
+    image.dim = ImageDim::d3;
+    image.format = format;
+    image.width = image.height = image.slices = size;
+    image.mips = static_cast<uint32_t>(mips.size());
+    for (const std::vector<float>& mip : mips) {
+        const Bytes bytes = encode_texels(format, mip);
+        image.texels.insert(image.texels.end(), bytes.begin(), bytes.end());
+    }
+    SamplerState sampler;
+    sampler.wrap = Wrap::clamp;
+    sampler.mips = mips.size() > 1 ? MipFilter::linear : MipFilter::none;
+    return image_of("uniform sampler3D " + name, std::move(image), sampler);
+}
+
 Resource depth_map(const std::string& name, uint32_t size, const std::vector<float>& depth, bool comparing, Filter filter) {
     ImageData image;
     image.format = comparing ? TexelFormat::d32_float : TexelFormat::r32_float;

@@ -24,6 +24,7 @@ uint32_t components_of(TexelFormat format);
 Resource cube_map(const std::string& name, TexelFormat format, uint32_t size, const std::vector<std::vector<float>>& mips);
 Resource picture_map(const std::string& name, TexelFormat format, uint32_t width, uint32_t height,
                      const std::vector<std::vector<float>>& mips, SamplerState sampler);
+Resource volume_map(const std::string& name, TexelFormat format, uint32_t size, const std::vector<std::vector<float>>& mips);
 Resource depth_map(const std::string& name, uint32_t size, const std::vector<float>& depth, bool comparing, Filter filter);
 
 // Centre of a cube face's texel as a direction, not normalised. Faces +x -x +y -y +z -z, texels as Vulkan lays them.

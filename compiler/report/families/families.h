@@ -9,6 +9,7 @@ Family diffuse_family(bool quick);
 Family environment_family(bool quick);
 Family specular_family(bool quick);
 Family specialisation_family(bool quick);
+Family indirect_family(bool quick);
 Family fresnel_family(bool quick);
 Family hair_family(bool quick);
 Family shadow_family(bool quick);
