@@ -34,8 +34,8 @@
 //
 //     .exactly(f)        compare with f (double only) and take the bound from the reference: where the GLSL computes a
 //                        rewritten form, the reference given to test() follows it and f is the textbook form
-//     .truth(f, r, a)    the model: |reference - f| <= r |f| + a for every sample (f in double only, called where the first
-//                        argument list of samples goes; r, a: stated by theory), and reported
+//     .truth(f, r, a)    the model: |reference - f| <= r |f| + a for every sample, and reported; f in double only, r and a
+//                        stated by theory
 //     .skip(f)           samples for which f (double) is true lie outside the function's declared range
 //     .undecided(share), .unbounded(share)   other limits, with the reason beside them
 //     .named(name)       the name in reports; else what stands before the first parenthesis of the call
@@ -43,7 +43,8 @@
 // Textures: Functions::texture binds one that all calls of the file see under its name; the reference's lambda captures a
 // callable that stands for it.
 //
-// One line a function goes to standard output, for people and for the rows of uber/README.md:
+// One line a function goes to standard output, for people and for tools/function_errors.py, which makes a table of them in
+// uber/README.md:
 //
 //     KILN_FUNCTION <name> <worst absolute> <worst relative> <worst ulp> <share of the bound> key=value...
 //

@@ -192,6 +192,17 @@ TEST(Functions, GiPath) {
             inside, unit("d"))
         .named("gi_trace");
     path.test(
+            "float t; vec3 n, albedo, emission; gi_meet(p, d, 1e-4, 1e30, t, n, albedo, emission); result = vec4(n, albedo.r);",
+            [](auto p, auto d) {
+                using T = std::decay_t<decltype(p.x)>;
+                T t;
+                Vec3<T> n, albedo, emission;
+                gi_meet(converted<T>(gi_cornell_quads()), p, d, T(1e-4), T(1e30), t, n, albedo, emission);
+                return Vec4<T>{n.x, n.y, n.z, albedo.x};
+            },
+            inside, unit("d"))
+        .named("gi_meet");
+    path.test(
         "gi_distance(p)",
         [](auto p) {
             using T = std::decay_t<decltype(p.x)>;

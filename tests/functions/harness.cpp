@@ -36,14 +36,12 @@ std::string library_text(const std::string& file) {
     return out;
 }
 
-void print(const Figures& f) {
-    std::printf(
-        "KILN_FUNCTION %s %.3g %.3g %.3g %.3g samples=%llu undecided=%llu unbounded=%llu rounding_ulp=%.3g "
-        "implementation_ulp=%.3g "
-        "model_relative=%.3g typical_bound_ulp=%.3g\n",
-        f.name.c_str(), f.absolute, f.relative, f.ulps, f.share, static_cast<unsigned long long>(f.samples),
-        static_cast<unsigned long long>(f.undecided), static_cast<unsigned long long>(f.unbounded), f.rounding_ulps,
-        f.implementation_ulps, f.model_relative, f.typical_bound_ulps);
+void print(const Figures& f, const std::string& file) {
+    const auto count = [](uint64_t n) { return static_cast<unsigned long long>(n); };
+    std::printf("KILN_FUNCTION %s %.3g %.3g %.3g %.3g file=%s samples=%llu undecided=%llu unbounded=%llu", f.name.c_str(),
+                f.absolute, f.relative, f.ulps, f.share, file.c_str(), count(f.samples), count(f.undecided), count(f.unbounded));
+    std::printf(" rounding_ulp=%.3g implementation_ulp=%.3g model_relative=%.3g typical_bound_ulp=%.3g\n", f.rounding_ulps,
+                f.implementation_ulps, f.model_relative, f.typical_bound_ulps);
     if (f.share > 0.5) std::printf("    nearest to its bound: %s\n", f.worst.c_str());
     std::fflush(stdout);
 }
@@ -133,7 +131,7 @@ std::vector<Figures> Functions::evaluate(std::vector<std::string>& breaches) {
 std::vector<Figures> Functions::run() {
     std::vector<std::string> breaches;
     std::vector<Figures> out = evaluate(breaches);
-    for (const Figures& f : out) print(f);
+    for (const Figures& f : out) print(f, files_.front());
     for (const std::string& b : breaches) ADD_FAILURE() << b;
     EXPECT_EQ(out.size(), tests_.size());
     return out;

@@ -132,7 +132,7 @@ void Verdict::judge(const std::vector<uint32_t>& results, const std::string& how
                 continue;
             }
             figures_.absolute = std::max(figures_.absolute, off);
-            if (bound > 0 && off / bound > figures_.share) {
+            if (!close_[i] && bound > 0 && off / bound > figures_.share) {
                 figures_.share = off / bound;
                 figures_.worst = "device" + function_.result.picks[c] + " " + text(got) + ", reference " + text(e.exact) +
                                  ", bound " + text(bound) + " for " + describe(i);

@@ -33,6 +33,36 @@ int gi_trace(vec3 origin, vec3 direction, float start, float reach, out float t)
     return nearest;
 }
 
+// The same, with what is met. Fields are taken where the loop stands: an array of constants indexed by a result would become
+// a ladder of branches for every field.
+bool gi_meet(vec3 origin, vec3 direction, float start, float reach, out float t, out vec3 n, out vec3 albedo, out vec3 emission) {
+    bool met = false;
+    t = reach;
+    n = vec3(0.0);
+    albedo = vec3(0.0);
+    emission = vec3(0.0);
+    for (int i = 0; i < GI_QUADS; ++i) {
+        const vec3 u = GI_QUAD(i).u;
+        const vec3 v = GI_QUAD(i).v;
+        const vec3 across = cross(u, v);
+        const float slope = dot(across, direction);
+        const vec3 d = GI_QUAD(i).origin - origin;
+        const float at = dot(across, d) / (abs(slope) < 1e-30 ? 1e-30 : slope);
+        const vec3 p = direction * at - d;
+        const float a = dot(p, u) / dot(u, u);
+        const float b = dot(p, v) / dot(v, v);
+        if (abs(slope) >= 1e-30 && at > start && at < t && a >= 0.0 && a <= 1.0 && b >= 0.0 && b <= 1.0) {
+            met = true;
+            t = at;
+            n = across;
+            albedo = GI_QUAD(i).albedo;
+            emission = GI_QUAD(i).emission;
+        }
+    }
+    n *= inversesqrt(max(dot(n, n), 1e-30));
+    return met;
+}
+
 // Irradiance at x, n straight from the lamp, 0 in shadow.
 vec3 gi_direct(GiLamp lamp, vec3 x, vec3 n) {
     const vec3 d = lamp.position - x;
@@ -52,13 +82,11 @@ vec3 gi_path(GiLamp lamp, vec3 origin, vec3 direction, int bounces, inout uint s
     vec3 weight = vec3(1.0);
     for (int bounce = 0; bounce <= bounces; ++bounce) {
         float t;
-        const int i = gi_trace(origin, direction, 1e-4, 1e30, t);
-        if (i < 0) break;
-        const vec3 n = normalize(cross(GI_QUAD(i).u, GI_QUAD(i).v));
-        if (dot(n, direction) >= 0.0) break;
-        sum += weight * GI_QUAD(i).emission;
+        vec3 n, albedo, emission;
+        if (!gi_meet(origin, direction, 1e-4, 1e30, t, n, albedo, emission) || dot(n, direction) >= 0.0) break;
+        sum += weight * emission;
         if (bounce == bounces) break;
-        weight *= GI_QUAD(i).albedo;
+        weight *= albedo;
         origin += direction * t;
         sum += weight * gi_direct(lamp, origin, n) / pi;
         direction = gi_cosine_direction(vec2(gi_random(state), gi_random(state)), n);

@@ -28,6 +28,17 @@ int gi_trace(const Quads& quads, const Vec3<T>& origin, const Vec3<T>& direction
 }
 
 template <class T, class Quads>
+bool gi_meet(const Quads& quads, const Vec3<T>& origin, const Vec3<T>& direction, const T& start, const T& reach, T& t,
+             Vec3<T>& n, Vec3<T>& albedo, Vec3<T>& emission) {
+    const int i = gi_trace(quads, origin, direction, start, reach, t);
+    n = albedo = emission = splat3(T(0));
+    if (i < 0) return false;
+    const GiQuad<T>& quad = quads[static_cast<std::size_t>(i)];
+    n = normalize(cross(quad.u, quad.v)), albedo = quad.albedo, emission = quad.emission;
+    return true;
+}
+
+template <class T, class Quads>
 Vec3<T> gi_direct(const Quads& quads, const GiLamp<T>& lamp, const Vec3<T>& x, const Vec3<T>& n) {
     const Vec3<T> d = lamp.position - x;
     const T square = max(dot(d, d), T(1e-8)), far = sqrt(square);
@@ -44,14 +55,11 @@ Vec3<T> gi_path(const Quads& quads, const GiLamp<T>& lamp, Vec3<T> origin, Vec3<
     Vec3<T> sum = splat3(T(0)), weight = splat3(T(1));
     for (int bounce = 0; bounce <= bounces; ++bounce) {
         T t;
-        const int i = gi_trace(quads, origin, direction, T(1e-4), T(1e30), t);
-        if (i < 0) break;
-        const GiQuad<T>& quad = quads[static_cast<std::size_t>(i)];
-        const Vec3<T> n = normalize(cross(quad.u, quad.v));
-        if (dot(n, direction) >= T(0)) break;
-        sum = sum + weight * quad.emission;
+        Vec3<T> n, albedo, emission;
+        if (!gi_meet(quads, origin, direction, T(1e-4), T(1e30), t, n, albedo, emission) || dot(n, direction) >= T(0)) break;
+        sum = sum + weight * emission;
         if (bounce == bounces) break;
-        weight = weight * quad.albedo;
+        weight = weight * albedo;
         origin = origin + direction * t;
         sum = sum + weight * gi_direct(quads, lamp, origin, n) / T(pi);
         const T a = T(random()), b = T(random());
