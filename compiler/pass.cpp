@@ -328,7 +328,7 @@ void pass_table(Build& build, const BuildOptions& options, PassContext& context)
     input.modules = &build.modules;
     input.artifacts = &build.artifacts;
     input.interfaces = &build.interfaces;
-    auto written = write_table(input);
+    auto written = write_table(input, context.jobs);
     if (!written.ok()) {
         build.failed = written.error();
         return;
@@ -362,7 +362,7 @@ Build run_pass(const BuildOptions& options, PassContext& context) {
     list_depends(build, reads);
     if (build.ok()) pass_table(build, options, context);
     build.diags.sort();
-    if (build.ok()) {
+    if (build.ok() && context.store.keeps()) {
         WireWriter out;
         write_build(out, build, folder);
         note_store_failure(build, remember(context.store, folder, asked, reads, out.view()));

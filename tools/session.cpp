@@ -24,7 +24,7 @@ Result<std::unique_ptr<Session>> Session::open(const Args& args) {
         else
             print_note("warning: building without a cache: " + store.error().message);
     }
-    if (!session->store) session->store = std::make_unique<MemoryStore>();
+    if (!session->store) session->store = std::make_unique<NoStore>();
     session->tools = make_toolchain();
     session->context = std::make_unique<PassContext>(
         PassContext{session->files, *session->store, *session->tools, *session->jobs, terminal_progress()});

@@ -22,9 +22,19 @@ public:
     virtual Result<std::optional<Bytes>> get(Keyspace space, const Digest& key) = 0;
     // A blob whose bytes do not hash to `key` is refused with an Error.
     virtual Status put(Keyspace space, const Digest& key, ByteView bytes) = 0;
+    // False: nothing that is put here is ever found, so naming and packing it is work for nothing.
+    virtual bool keeps() const { return true; }
 };
 
-// Keeps everything in memory: the fake for tests, and the store of a build that was told to use none.
+// The store of a build that was told to use none.
+class NoStore final : public Store {
+public:
+    Result<std::optional<Bytes>> get(Keyspace, const Digest&) override { return std::optional<Bytes>(); }
+    Status put(Keyspace, const Digest&, ByteView) override { return {}; }
+    bool keeps() const override { return false; }
+};
+
+// Keeps everything in memory: the fake for tests.
 class MemoryStore final : public Store {
 public:
     Result<std::optional<Bytes>> get(Keyspace space, const Digest& key) override;

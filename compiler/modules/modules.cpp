@@ -294,6 +294,7 @@ private:
 
     // Blobs before the records that name them, so that a reader never finds a record without its blobs.
     bool remember() {
+        if (!store_.keeps()) return true;
         std::map<Digest, const Words*> blobs;
         std::vector<const Unit*> fresh;
         for (const Unit& unit : units_) {

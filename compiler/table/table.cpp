@@ -19,7 +19,7 @@ namespace {
 
 class TableWriter {
 public:
-    explicit TableWriter(const TableInput& input) : in_(input) {}
+    TableWriter(const TableInput& input, const Jobs& jobs) : in_(input), jobs_(jobs) {}
 
     Result<Bytes> write() {
         info();
@@ -66,7 +66,7 @@ private:
             texts.push_back(&list[order[i]].text);
             breaks.push_back(i != 0 && kind[order[i]] != kind[order[i - 1]]);
         }
-        Result<PackedTexts> packed = pack_texts(texts, breaks);
+        Result<PackedTexts> packed = pack_texts(texts, breaks, jobs_);
         KILN_TRY(packed);
         std::vector<kf_artifact_record> records(list.size());
         for (size_t i = 0; i < order.size(); ++i) {
@@ -257,6 +257,7 @@ private:
     }
 
     const TableInput& in_;
+    const Jobs& jobs_;
     TableSections out_;
 };
 
@@ -276,8 +277,8 @@ std::vector<std::vector<size_t>> stages_by_shader(const std::vector<StageClasses
     return out;
 }
 
-Result<TableFiles> write_table(const TableInput& input) {
-    Result<Bytes> table = TableWriter(input).write();
+Result<TableFiles> write_table(const TableInput& input, const Jobs& jobs) {
+    Result<Bytes> table = TableWriter(input, jobs).write();
     KILN_TRY(table);
     TableFiles files;
     files.table = std::move(*table);

@@ -2,6 +2,7 @@
 // Writes the variant table (.kiln) and its proof. The byte layout is written down in runtime/table_format.h, the proof's in
 // proof.h; compiler/runtime reads tables.
 
+#include "compiler/base/jobs.h"
 #include "compiler/interfaces/interfaces.h"
 
 namespace kiln {
@@ -25,7 +26,7 @@ struct TableFiles {
 
 // Deterministic: equal inputs give equal bytes. An Error when two classes of a stage claim the same variant, or when a size
 // passes what the format can say.
-Result<TableFiles> write_table(const TableInput& input);
+Result<TableFiles> write_table(const TableInput& input, const Jobs& jobs = Jobs(1));
 
 // A C++17 header with the key's bit fields as constexpr, one namespace a shader.
 std::string write_key_header(const TableInput& input);

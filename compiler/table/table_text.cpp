@@ -10,42 +10,49 @@ namespace kiln {
 
 namespace {
 
-Status close_block(PackedTexts& out, Bytes& plain) {
-    if (plain.empty()) return {};
-    kf_block_record block{};
-    block.at = out.bytes.size();
-    block.unpacked = static_cast<uint32_t>(plain.size());
-    Bytes packed(static_cast<size_t>(LZ4_compressBound(static_cast<int>(plain.size()))));
-    const int size = LZ4_compress_HC(reinterpret_cast<const char*>(plain.data()), reinterpret_cast<char*>(packed.data()),
-                                     static_cast<int>(plain.size()), static_cast<int>(packed.size()), LZ4HC_CLEVEL_DEFAULT);
-    if (size <= 0) return environment_error("a text could not be compressed");
-    packed.resize(static_cast<size_t>(size));
-    block.codec = packed.size() < plain.size() ? kf_codec_lz4 : kf_codec_raw;
-    const Bytes& kept = block.codec == kf_codec_lz4 ? packed : plain;
-    block.packed = static_cast<uint32_t>(kept.size());
-    out.bytes.insert(out.bytes.end(), kept.begin(), kept.end());
-    out.blocks.push_back(block);
-    plain.clear();
-    return {};
+struct Block {
+    Bytes plain, packed;
+    bool failed = false;
+};
+
+void compress(Block& block) {
+    block.packed.resize(static_cast<size_t>(LZ4_compressBound(static_cast<int>(block.plain.size()))));
+    const int size = LZ4_compress_HC(reinterpret_cast<const char*>(block.plain.data()),
+                                     reinterpret_cast<char*>(block.packed.data()), static_cast<int>(block.plain.size()),
+                                     static_cast<int>(block.packed.size()), LZ4HC_CLEVEL_DEFAULT);
+    block.failed = size <= 0;
+    block.packed.resize(block.failed ? 0 : static_cast<size_t>(size));
 }
 
 }  // namespace
 
-Result<PackedTexts> pack_texts(const std::vector<const std::string*>& texts, const std::vector<bool>& breaks) {
+Result<PackedTexts> pack_texts(const std::vector<const std::string*>& texts, const std::vector<bool>& breaks, const Jobs& jobs) {
     PackedTexts out;
-    Bytes plain;
+    std::vector<Block> blocks;
     for (size_t i = 0; i < texts.size(); ++i) {
         const std::string& text = *texts[i];
         if (text.size() > LZ4_MAX_INPUT_SIZE) return environment_error("a text is too large for a table");
-        if (breaks[i] || plain.size() + text.size() > KF_BLOCK_BYTES) KILN_TRY(close_block(out, plain));
+        if (blocks.empty() || breaks[i] || blocks.back().plain.size() + text.size() > KF_BLOCK_BYTES) blocks.emplace_back();
+        Bytes& plain = blocks.back().plain;
         kf_artifact_record place{};
-        place.block = static_cast<uint32_t>(out.blocks.size());
+        place.block = static_cast<uint32_t>(blocks.size() - 1);
         place.at = static_cast<uint32_t>(plain.size());
         place.size = static_cast<uint32_t>(text.size());
         out.places.push_back(place);
         plain.insert(plain.end(), text.begin(), text.end());
     }
-    KILN_TRY(close_block(out, plain));
+    if (!jobs.each(blocks.size(), [&](size_t i) { compress(blocks[i]); })) return environment_error("interrupted");
+    for (const Block& b : blocks) {
+        if (b.failed) return environment_error("a text could not be compressed");
+        kf_block_record record{};
+        record.at = out.bytes.size();
+        record.unpacked = static_cast<uint32_t>(b.plain.size());
+        record.codec = b.packed.size() < b.plain.size() ? kf_codec_lz4 : kf_codec_raw;
+        const Bytes& kept = record.codec == kf_codec_lz4 ? b.packed : b.plain;
+        record.packed = static_cast<uint32_t>(kept.size());
+        out.bytes.insert(out.bytes.end(), kept.begin(), kept.end());
+        out.blocks.push_back(record);
+    }
     return out;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "compiler/base/bytes.h"
+#include "compiler/base/jobs.h"
 #include "compiler/base/result.h"
 #include "compiler/runtime/table_format.h"
 
@@ -18,6 +19,6 @@ struct PackedTexts {
 
 // Texts that are near each other in the list share blocks, so order them by likeness. A block holds several texts up to
 // KF_BLOCK_BYTES, or one text of any size below 2 GiB; `breaks[i]` starts a new block before text i.
-Result<PackedTexts> pack_texts(const std::vector<const std::string*>& texts, const std::vector<bool>& breaks);
+Result<PackedTexts> pack_texts(const std::vector<const std::string*>& texts, const std::vector<bool>& breaks, const Jobs& jobs);
 
 }  // namespace kiln

@@ -85,6 +85,27 @@ void register_lean(spvtools::Optimizer& o) {
         .RegisterPass(CreateCompactIdsPass());
 }
 
+std::vector<ToolMessage> validate(WordView words, const Options& options, bool friendly_names) {
+    std::vector<ToolMessage> messages;
+    try {
+        spvtools::SpirvTools tools(environment_of(options));
+        tools.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
+            std::string line(text);
+            for (char& c : line) c = c == '\n' ? ' ' : c;
+            messages.push_back({severity_of(level), 0, std::move(line)});
+        });
+        spvtools::ValidatorOptions how;
+        how.SetScalarBlockLayout(wants_scalar_layout(words));
+        how.SetFriendlyNames(friendly_names);
+        if (!tools.Validate(words.data(), words.size(), how) && messages.empty()) {
+            messages.push_back({Severity::error, 0, "spirv-val refused the module without a reason"});
+        }
+    } catch (const std::exception& problem) {
+        messages.push_back({Severity::error, 0, std::string("spirv-val failed: ") + problem.what()});
+    }
+    return messages;
+}
+
 }  // namespace
 
 std::string spirv_version() { return spvSoftwareVersionDetailsString(); }
@@ -121,23 +142,9 @@ Result<Words> spirv_optimise(WordView words, const Options& options) {
 }
 
 std::vector<ToolMessage> spirv_validate(WordView words, const Options& options) {
-    std::vector<ToolMessage> messages;
-    try {
-        spvtools::SpirvTools tools(environment_of(options));
-        tools.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
-            std::string line(text);
-            for (char& c : line) c = c == '\n' ? ' ' : c;
-            messages.push_back({severity_of(level), 0, std::move(line)});
-        });
-        spvtools::ValidatorOptions how;
-        how.SetScalarBlockLayout(wants_scalar_layout(words));
-        if (!tools.Validate(words.data(), words.size(), how) && messages.empty()) {
-            messages.push_back({Severity::error, 0, "spirv-val refused the module without a reason"});
-        }
-    } catch (const std::exception& problem) {
-        messages.push_back({Severity::error, 0, std::string("spirv-val failed: ") + problem.what()});
-    }
-    return messages;
+    // Names for messages cost a third of a validation, so only a module that has messages is asked again with them.
+    std::vector<ToolMessage> messages = validate(words, options, false);
+    return messages.empty() ? messages : validate(words, options, true);
 }
 
 Result<std::string> spirv_disassemble(WordView words) {

@@ -130,7 +130,7 @@ TEST(Decoder, GivesBackWhatWasPacked) {
     for (const std::string& t : texts) list.push_back(&t);
     std::vector<bool> breaks(list.size());
     breaks[100] = breaks[200] = true;
-    const auto packed = pack_texts(list, breaks);
+    const auto packed = pack_texts(list, breaks, Jobs(2));
     ASSERT_TRUE(packed.ok());
     bool raw = false;
     for (size_t i = 0; i < texts.size(); ++i) {
