@@ -250,7 +250,7 @@ void pass_classes(Build& build, const BuildOptions& options, PassContext& contex
                 how.max_states = options.max_states;
                 how.lines = shader.options.debug;
                 *split = split_stage(manifest, shader, *stage, space, space.needed, context.files, how);
-                if (!split->diags.has_errors()) {
+                if (!split->diags.has_errors() && context.store.keeps()) {
                     WireWriter out;
                     write_split(out, *split, space, manifest.folder);
                     stored[i] = remember(context.store, manifest.folder, asked, split->reads, out.view());

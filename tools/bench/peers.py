@@ -19,6 +19,7 @@ import time
 import yaml
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+ROUNDS = 3
 TARGETS = ["spirv", "glsl450", "hlsl60", "msl21"]
 
 
@@ -139,8 +140,7 @@ def peer_qsb(runs, folder):
 def bench_manifest(kiln, path, quick, folder):
     out = {}
     table = f"{folder}/t.kiln"
-    cold, cold_wall, report = best(3, lambda: kiln.build(path, table, "none", 1))
-    _, two_wall, _ = min((kiln.build(path, table, "none", 2) for _ in range(3)), key=lambda r: r[1])
+    report = kiln.build(path, table, "none", 1)[2]
     counts = report["counts"]
     modules = int(counts["modules"])
     listed = kiln.variants(path, 100000)
@@ -149,11 +149,19 @@ def bench_manifest(kiln, path, quick, folder):
     runs = stage_runs(path, [(words, None) for words in listed])
     most = 24 if quick else 120
     sample = modules_runs[:: max(1, len(modules_runs) // most)]
-    today = peers_today(sample, folder)
-    per_run = sum(today.values()) / len(sample)
     variant_sample = runs[:: max(1, len(runs) // most)]
+    # A shared machine is faster in one minute than in the next: each round measures both sides, and a ratio is the median of the rounds'.
+    rounds = []
+    for _ in range(ROUNDS):
+        cold, wall, _ = best(3, lambda: kiln.build(path, table, "none", 1))
+        rounds.append({"cold": cold, "wall": wall, "today": peers_today(sample, folder)})
+        rounds[-1]["two"] = min(kiln.build(path, table, "none", 2)[1] for _ in range(3))
+        rounds[-1]["qsb"] = peer_qsb(sample, folder)
+        rounds[-1]["ratio"] = sum(rounds[-1]["today"].values()) / len(sample) * modules / cold
     per_variant_run = sum(peers_today(variant_sample, folder).values()) / len(variant_sample)
-    qsb = peer_qsb(sample, folder)
+    middle = sorted(rounds, key=lambda r: r["ratio"])[ROUNDS // 2]
+    cold, cold_wall, today, qsb = middle["cold"], middle["wall"], middle["today"], middle["qsb"]
+    per_run = sum(today.values()) / len(sample)
     unique = cold / modules
     out["counts"] = counts
     out["kiln_cold_cpu_s"] = cold
@@ -163,19 +171,21 @@ def bench_manifest(kiln, path, quick, folder):
     out["today_ms_a_stage_compile"] = 1000 * per_run
     out["today_split_ms"] = {k: 1000 * v / len(sample) for k, v in today.items()}
     out["stage_compiles_measured"] = len(sample)
-    out["ratio_a_unique_module"] = per_run / unique
+    out["ratio_a_unique_module"] = middle["ratio"]
+    out["ratio_of_each_round"] = [r["ratio"] for r in rounds]
     out["ratio_a_legal_variant"] = per_variant_run * len(runs) / cold
     if qsb is not None:
         out["qsb_ms_a_stage_compile"] = 1000 * qsb / len(sample)
         out["qsb_ratio_a_unique_module"] = qsb / len(sample) / unique
-    out["one_job_wall_s"], out["two_jobs_wall_s"] = cold_wall, two_wall
     # glslang builds its symbol tables once, on one thread; the rest is what jobs share.
     tiny = f"{folder}/tiny.yaml"
     pathlib.Path(tiny).write_text("kiln: 1\nname: t\naxes: {a: {macro: A, values: bool}}\nshaders:\n  - {name: t, stages: {fragment: t.frag}}\n")
     pathlib.Path(f"{folder}/t.frag").write_text("#version 450\nlayout(location=0) out vec4 c;\nvoid main() { c = vec4(A); }\n")
     init = min(kiln.build(tiny, f"{folder}/tiny.kiln", "none", 1)[1] for _ in range(3))
     out["one_time_start_s"] = init
-    out["two_jobs_speedup_after_start"] = (cold_wall - init) / max(1e-9, two_wall - init)
+    pair = sorted(rounds, key=lambda r: (r["wall"] - init) / max(1e-9, r["two"] - init))[ROUNDS // 2]
+    out["one_job_wall_s"], out["two_jobs_wall_s"] = pair["wall"], pair["two"]
+    out["two_jobs_speedup_after_start"] = (pair["wall"] - init) / max(1e-9, pair["two"] - init)
     # Warm, and after edits, on a copy of the sources.
     copy = pathlib.Path(folder) / "copy"
     shutil.copytree(ROOT / "manifests", copy / "manifests")
