@@ -100,7 +100,7 @@ uint32_t components_of(TexelFormat format) {
 
 Bytes encode_texels(TexelFormat format, const std::vector<float>& c) {
     Bytes out;
-    const size_t n = components_of(format);
+    [[maybe_unused]] const size_t n = components_of(format);
     assert(c.size() % n == 0);
     switch (format) {
         case TexelFormat::r32_float:

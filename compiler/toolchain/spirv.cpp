@@ -13,6 +13,7 @@
 #include <spirv-tools/optimizer.hpp>
 
 #include "compiler/toolchain/spirv_names.h"
+#include "compiler/toolchain/spirv_reach.h"
 
 namespace kiln {
 namespace {
@@ -62,13 +63,14 @@ Result<Words> run(const char* what, WordView words, const Options& options, cons
     }
 }
 
+void register_inlining(spvtools::Optimizer& o) {
+    using namespace spvtools;
+    o.RegisterPass(CreateWrapOpKillPass()).RegisterPass(CreateMergeReturnPass()).RegisterPass(CreateInlineExhaustivePass());
+}
+
 void register_lean(spvtools::Optimizer& o) {
     using namespace spvtools;
-    o.RegisterPass(CreateWrapOpKillPass())
-        .RegisterPass(CreateMergeReturnPass())
-        .RegisterPass(CreateInlineExhaustivePass())
-        .RegisterPass(CreateEliminateDeadFunctionsPass())
-        .RegisterPass(CreatePrivateToLocalPass())
+    o.RegisterPass(CreatePrivateToLocalPass())
         .RegisterPass(CreateScalarReplacementPass())
         .RegisterPass(CreateLocalSingleStoreElimPass())
         .RegisterPass(CreateLocalAccessChainConvertPass())
@@ -82,6 +84,45 @@ void register_lean(spvtools::Optimizer& o) {
         .RegisterPass(CreateLocalRedundancyEliminationPass())
         .RegisterPass(CreateAggressiveDCEPass())
         .RegisterPass(CreateCompactIdsPass());
+}
+
+bool is_id(spv_operand_type_t type) {
+    switch (type) {
+        case SPV_OPERAND_TYPE_ID:
+        case SPV_OPERAND_TYPE_TYPE_ID:
+        case SPV_OPERAND_TYPE_RESULT_ID:
+        case SPV_OPERAND_TYPE_MEMORY_SEMANTICS_ID:
+        case SPV_OPERAND_TYPE_SCOPE_ID:
+            return true;
+        default:
+            return false;
+    }
+}
+
+struct Parsing {
+    const uint32_t* first;
+    ParsedModule* out;
+};
+
+spv_result_t note_instruction(void* user, const spv_parsed_instruction_t* in) {
+    const Parsing& parsing = *static_cast<const Parsing*>(user);
+    ParsedModule& out = *parsing.out;
+    const uint32_t at = static_cast<uint32_t>(in->words - parsing.first);
+    const uint32_t first_id = static_cast<uint32_t>(out.id_words.size());
+    for (uint16_t i = 0; i < in->num_operands; ++i)
+        if (is_id(in->operands[i].type)) out.id_words.push_back(at + in->operands[i].offset);
+    out.instructions.push_back(
+        {at, in->opcode, in->num_words, in->result_id, first_id, static_cast<uint32_t>(out.id_words.size()) - first_id});
+    return SPV_SUCCESS;
+}
+
+bool parse(WordView words, const Options& options, ParsedModule& out) {
+    out.instructions.clear();
+    out.id_words.clear();
+    const spvtools::Context context(environment_of(options));
+    Parsing parsing{words.data(), &out};
+    return spvBinaryParse(context.CContext(), &parsing, words.data(), words.size(), nullptr, note_instruction, nullptr) ==
+           SPV_SUCCESS;
 }
 
 std::vector<ToolMessage> validate(WordView words, const Options& options, bool friendly_names) {
@@ -121,15 +162,27 @@ Result<Words> spirv_prune(WordView words, const Options& options) {
     if (options.debug) return run("prune", words, options, passes);
     Result<Words> bare = keep_interface_names(words);
     if (!bare.ok()) return bare;
-    return run("prune", *bare, options, passes);
+    ParsedModule parsed;
+    if (!parse(*bare, options, parsed)) return environment_error("SPIRV-Tools could not parse a module");
+    if (has_constant_branch(*bare, parsed)) {
+        bare = run("prune", *bare, options, passes);
+        if (!bare.ok()) return bare;
+        if (!parse(*bare, options, parsed)) return environment_error("SPIRV-Tools could not parse a module");
+    }
+    return keep_reached(*bare, parsed);
 }
 
 Result<Words> spirv_optimise(WordView words, const Options& options) {
     switch (options.optimise) {
         case Optimise::none:
             return Words(words.begin(), words.end());
-        case Optimise::performance:
-            return run("optimise", words, options, register_lean);
+        case Optimise::performance: {
+            // Functions that were inlined everywhere are dropped here: SPIRV-Tools would take them apart word by word.
+            Result<Words> flat = run("inline", words, options, register_inlining);
+            ParsedModule parsed;
+            if (flat.ok() && !options.debug && parse(*flat, options, parsed)) flat = keep_reached(*flat, parsed);
+            return flat.ok() ? run("optimise", *flat, options, register_lean) : flat;
+        }
         case Optimise::size:
             return run("optimise", words, options, [](spvtools::Optimizer& o) {
                 o.RegisterSizePasses();
