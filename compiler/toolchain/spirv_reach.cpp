@@ -7,6 +7,7 @@ namespace kiln {
 namespace {
 
 enum Opcode : uint16_t {
+    op_source_extension = 4,
     op_name = 5,
     op_member_name = 6,
     op_extension = 10,
@@ -52,8 +53,18 @@ bool hangs_on_target(uint16_t op) {
 }
 
 bool is_root(uint16_t op) {
-    return op == op_extension || op == op_memory_model || op == op_entry_point || op == op_execution_mode ||
-           op == op_capability || op == op_execution_mode_id;
+    switch (op) {
+        case op_source_extension:  // tells which layout rules the source asked for
+        case op_extension:
+        case op_memory_model:
+        case op_entry_point:
+        case op_execution_mode:
+        case op_execution_mode_id:
+        case op_capability:
+            return true;
+        default:
+            return false;
+    }
 }
 
 std::vector<uint32_t> definitions(WordView words, const ParsedModule& parsed) {

@@ -75,6 +75,35 @@ void main() { vec4 second = texture(albedo, uv); if (false) { second = scene.tin
     EXPECT_EQ(text_of(pb), text_of(pc));
 }
 
+TEST(Prune, UnreadInputsLeaveTheInterfaceAndOutputsStay) {
+    const std::string text = text_of(spirv_prune(compiled(Stage::fragment, R"(#version 450
+layout(location = 0) in vec2 read_input;
+layout(location = 1) in vec2 unread_input;
+layout(location = 0) out vec4 written;
+layout(location = 1) out vec4 unwritten;
+layout(binding = 0) uniform sampler2D unread_texture;
+void main() { written = read_input.xyxy; }
+)"),
+                                                 Options()));
+    for (const char* name : {"\"read_input\"", "\"written\"", "\"unwritten\""}) EXPECT_TRUE(has(text, name)) << name << text;
+    for (const char* name : {"unread_input", "unread_texture", "SampledImage"}) EXPECT_FALSE(has(text, name)) << name << text;
+}
+
+TEST(Prune, ABranchOnAConstantIsResolvedBeforeMerging) {
+    const std::string rest = R"(
+void main() { if (MODE == 1) colour = scene.tint; else colour = texture(albedo, uv); switch (MODE) { case 7: colour *= gain; } }
+)";
+    const auto pruned = [&](const char* mode) {
+        std::string text = header + rest;
+        for (size_t at = text.find("MODE"); at != std::string::npos; at = text.find("MODE", at)) text.replace(at, 4, mode);
+        return *spirv_prune(compiled(Stage::fragment, text), Options());
+    };
+    EXPECT_EQ(pruned("2"), pruned("3"));
+    EXPECT_NE(pruned("1"), pruned("3"));
+    EXPECT_NE(pruned("7"), pruned("3"));
+    EXPECT_TRUE(spirv_validate(pruned("3"), Options()).empty());
+}
+
 TEST(Prune, AnotherInterfaceNameIsAnotherModule) {
     const std::string a = header + "void main() { colour = texture(albedo, uv); }";
     std::string b = a;
