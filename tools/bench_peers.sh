@@ -5,6 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 tools/setup.sh --bench >&2
 export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
+export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1  # checkouts share what they compile
 cmake --preset release -DKILN_BENCH=ON >/dev/null
 cmake --build --preset release >&2
 exec python3 tools/bench/peers.py build/release "$@"

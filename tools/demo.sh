@@ -9,6 +9,7 @@ say() { printf '\n== %s (%d s)\n' "$1" $((SECONDS - started)); }
 say "packages"
 tools/setup.sh
 export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
+export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1  # checkouts share what they compile
 started=$SECONDS
 
 say "building kiln"

@@ -15,13 +15,19 @@ done
 
 tools/setup.sh
 export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
+export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1  # checkouts share what they compile
 python3 tools/layers.py
 
-build() { cmake --preset "$1" >"build-$1.log" 2>&1 || { cat "build-$1.log"; exit 1; }; rm -f "build-$1.log"; cmake --build --preset "$1"; }
+# build PRESET [TARGET]
+build() {
+  cmake --preset "$1" >"build-$1.log" 2>&1 || { cat "build-$1.log"; exit 1; }
+  rm -f "build-$1.log"
+  cmake --build --preset "$1" ${2:+--target "$2"}
+}
 
 if [ "$full" = yes ]; then
   git ls-files '*.cpp' '*.h' '*.hpp' | xargs clang-format --dry-run --Werror
-  build tsan
+  build tsan unit_tests
   ctest --preset tsan -L 'unit' -LE device -j "$(nproc)"
   build fuzz
   tools/fuzz.sh build/fuzz 60
@@ -29,7 +35,7 @@ fi
 
 # The sanitizer build runs the unit tests and the fuzz corpora; device tests run without it, since the driver's JIT is not
 # instrumented.
-build asan
+build asan unit_tests
 [ "$full" = yes ] || export KILN_ROUNDS=200  # of random shaders against glslang's preprocessor; all of them run in the dev build
 ctest --preset asan -L 'unit|fuzz' -j "$(nproc)"
 unset KILN_ROUNDS
