@@ -66,7 +66,9 @@ size_t floats_of(const std::vector<Field>& fields) {
 namespace {
 
 std::string head(const std::vector<Resource>& resources, bool points) {
-    std::string t = "#version 450\nlayout(local_size_x = " + std::to_string(group_size) + ") in;\n";
+    // The extension only lets a member say float16_t.
+    std::string t = "#version 450\n#extension GL_EXT_shader_explicit_arithmetic_types_float16 : enable\nlayout(local_size_x = " +
+                    std::to_string(group_size) + ") in;\n";
     t += "layout(push_constant) uniform Draw { uvec4 kiln_draw; };\n";
     t += "layout(std430, set = 0, binding = 0) buffer Results { float kiln_results[]; };\n";
     if (points) t += "layout(std430, set = 0, binding = 1) readonly buffer Given { float kiln_points[]; };\n";

@@ -217,6 +217,21 @@ Resource depth_map(const std::string& name, uint32_t size, const std::vector<flo
     return image_of(std::string(comparing ? "uniform sampler2DShadow " : "uniform sampler2D ") + name, std::move(image), sampler);
 }
 
+Resource depth_array(const std::string& name, uint32_t size, uint32_t layers, const std::vector<float>& depth) {
+    ImageData image;
+    image.format = TexelFormat::d32_float;
+    image.depth = image.arrayed = true;
+    image.width = image.height = size;
+    image.layers = layers;
+    image.texels = encode_texels(image.format, depth);
+    SamplerState sampler;
+    sampler.filter = Filter::nearest;
+    sampler.mips = MipFilter::none;
+    sampler.wrap = Wrap::clamp;
+    sampler.compare = Comparison::less_or_equal;
+    return image_of("uniform sampler2DArrayShadow " + name, std::move(image), sampler);
+}
+
 Vec3d cube_direction(uint32_t face, double x, double y) {
     switch (face) {
         case 0:

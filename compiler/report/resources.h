@@ -26,6 +26,8 @@ Resource picture_map(const std::string& name, TexelFormat format, uint32_t width
                      const std::vector<std::vector<float>>& mips, SamplerState sampler);
 Resource volume_map(const std::string& name, TexelFormat format, uint32_t size, const std::vector<std::vector<float>>& mips);
 Resource depth_map(const std::string& name, uint32_t size, const std::vector<float>& depth, bool comparing, Filter filter);
+// Layers of a comparing map, one after the other; nearest.
+Resource depth_array(const std::string& name, uint32_t size, uint32_t layers, const std::vector<float>& depth);
 
 // Centre of a cube face's texel as a direction, not normalised. Faces +x -x +y -y +z -z, texels as Vulkan lays them.
 Vec3d cube_direction(uint32_t face, double x, double y);

@@ -3,9 +3,12 @@
 namespace kiln::report {
 
 std::vector<Family> all_families(bool quick) {
-    return {diffuse_family(quick), environment_family(quick), specular_family(quick),
-            fresnel_family(quick), visibility_family(quick),  shadow_family(quick),
-            hair_family(quick),    indirect_family(quick),    specialisation_family(quick)};
+    std::vector<Family> out;
+    for (Family (*const make)(bool) :
+         {diffuse_family, environment_family, specular_family, fresnel_family, visibility_family, shadow_family, cascade_family,
+          precision_family, subsurface_family, hair_family, indirect_family, specialisation_family})
+        out.push_back(make(quick));
+    return out;
 }
 
 }  // namespace kiln::report
