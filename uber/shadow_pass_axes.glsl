@@ -3,6 +3,6 @@
 #define KIND_PLAIN 0
 #define KIND_MOMENTS 1
 
-#define LIGHT_DIRECTIONAL 0
-#define LIGHT_SPOT 1
+#define LIGHT_DIRECTIONAL 1    // numbered as surface has them
 #define LIGHT_POINT 2
+#define LIGHT_SPOT 3

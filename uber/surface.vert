@@ -1,6 +1,6 @@
 #version 450
-// Vertex stage of surface. Only the pass and the presence of a lightmap change its text; lights, materials and shadows do
-// not, so all of their variants share it.
+// Vertex stage of surface. Only the pass, and whether there are a lightmap, a normal map and an alpha test, change its text;
+// lights, materials and shadows do not, so all of their variants share it.
 
 #include "surface_axes.glsl"
 #include "surface_interface.glsl"
@@ -21,9 +21,19 @@ layout(location = 2) out vec2 material_uv;
 layout(location = 3) in vec2 lightmap_uv;
 layout(location = 3) out vec2 atlas_uv;
 #endif
-#elif PASS == PASS_VELOCITY
+#if NORMAL_MAP
+layout(location = 4) in vec4 tangent;    // w: handedness, its sign counts
+layout(location = 6) out vec4 world_tangent;
+#endif
+#else
+#if ALPHA_TEST
+layout(location = 2) in vec2 uv;
+layout(location = 2) out vec2 material_uv;
+#endif
+#if PASS == PASS_VELOCITY
 layout(location = 4) out vec4 clip_position;
 layout(location = 5) out vec4 previous_clip_position;
+#endif
 #endif
 
 void main() {
@@ -38,8 +48,16 @@ void main() {
 #if LIGHTMAP != LIGHTMAP_NONE
     atlas_uv = lightmap_uv * lightmap_rect.xy + lightmap_rect.zw;
 #endif
-#elif PASS == PASS_VELOCITY
+#if NORMAL_MAP
+    world_tangent = vec4(mat3(model) * tangent.xyz, tangent.w);
+#endif
+#else
+#if ALPHA_TEST
+    material_uv = uv;
+#endif
+#if PASS == PASS_VELOCITY
     clip_position = clip;
     previous_clip_position = previous_view_projection * (previous_model * vec4(position, 1.0));
+#endif
 #endif
 }

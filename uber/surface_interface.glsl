@@ -21,20 +21,20 @@ layout(std140, set = 0, binding = 1) uniform Light {
 
 layout(std140, set = 0, binding = 2) uniform Shadow {
     mat4 shadow_view_projection;    // world to the light's clip space; directional and spot
-    float shadow_near;              // metres, > 0; point
-    float shadow_far;               // metres, > shadow_near; point
+    float shadow_near;              // metres, > 0; point; pcss, vssm
+    float shadow_far;               // metres, > shadow_near; depth's range where directional; point; pcss, vssm
     float shadow_texel;             // metres; side of one shadow-map texel where the light's clip w is 1
     float shadow_depth_bias;        // in depth units, >= two quanta of the map: 4 / 65535 for D16
 };
 
 layout(std140, set = 1, binding = 0) uniform Material {
-    vec4 base_factor;               // rgb: multiplies base_map
+    vec4 base_factor;               // rgb: multiplies base_map; a: least opacity that is drawn; alpha_test
     vec4 specular_factor;           // rgb: multiplies specular_map; blinn_phong and pbr_sg
     vec3 emissive;                  // linear radiance, >= 0
-    float dielectric_specular;      // [0, 1], 0.5 is F0 = 0.04; pbr_mr
+    float dielectric_specular;      // [0, 1], 0.5 is F0 = 0.04; pbr_mr, disney's environment
     float shininess;                // Blinn-Phong exponent, [1, 2048]; blinn_phong
-    float roughness_factor;         // multiplies roughness_map; pbr_mr
-    float metallic_factor;          // multiplies metallic_map; pbr_mr
+    float roughness_factor;         // multiplies roughness_map; pbr_mr, disney
+    float metallic_factor;          // multiplies metallic_map; pbr_mr, disney
     float glossiness_factor;        // multiplies gloss_map; pbr_sg
 };
 

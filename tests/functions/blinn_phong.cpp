@@ -16,6 +16,9 @@ TEST(Functions, BlinnPhong) {
         "blinn_phong_roughness(shininess)", [](auto shininess) { return blinn_phong_roughness(shininess); },
         number("shininess", logarithmic(1, 2048)));
     brdf.test(
+        "blinn_phong_shininess(roughness)", [](auto roughness) { return blinn_phong_shininess(roughness); },
+        number("roughness", linear(0, 1)));
+    brdf.test(
         "blinn_phong(n, v, l, diffuse, specular, shininess)",
         [](auto n, auto v, auto l, auto diffuse, auto specular, auto shininess) {
             return blinn_phong(n, v, l, diffuse, specular, shininess);

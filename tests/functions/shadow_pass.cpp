@@ -12,7 +12,7 @@ constexpr uint32_t side = 64;
 const LightView view{2, 16, 2};
 
 enum Kind { plain = 0, moments = 1 };
-enum Light { directional = 0, spot = 1, point = 2 };
+enum Light { directional = 1, point = 2, spot = 3 };
 
 // A slanted caster, off centre and alike in no direction, z = 5 + 0.4 x, over a floor at 10 m.
 const Rectangle caster{0.5, 2.0, -1.5, -0.2};

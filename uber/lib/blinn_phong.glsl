@@ -18,6 +18,12 @@ float blinn_phong_roughness(float shininess) {
     return sqrt(sqrt(2.0 / (shininess + 2.0)));
 }
 
+// The way back, p = 2 / roughness^4 - 2, limited to [1, 2048]. roughness: [0, 1].
+float blinn_phong_shininess(float roughness) {
+    const float r2 = roughness * roughness;
+    return clamp(2.0 / max(r2 * r2, 1e-6) - 2.0, 1.0, 2048.0);
+}
+
 // The BRDF times n.l, per steradian:  (kd (1 - max ks) / pi + ks c (n.h)^p) n.l.  The highlight has the gate n.l > 0 like
 // the diffuse part (without it light leaks through from behind), and what it reflects is taken from the diffuse part.
 // n, v, l: unit vectors from the surface; diffuse (kd), specular (ks): [0, 1]; shininess: limited to [1, 2048] here, so

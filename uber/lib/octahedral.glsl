@@ -10,4 +10,12 @@ vec2 encode_octahedral(vec3 n) {
     return n.z >= 0.0 ? p : folded;
 }
 
+// The way back: folded up again where the octahedron's lower half lies, and made of unit length, which is never below
+// 1 / sqrt(3) before. p: [-1, 1]^2.
+vec3 decode_octahedral(vec2 p) {
+    const float z = 1.0 - abs(p.x) - abs(p.y);
+    const float fold = max(-z, 0.0);
+    return normalize(vec3(p.x + (p.x >= 0.0 ? -fold : fold), p.y + (p.y >= 0.0 ? -fold : fold), z));
+}
+
 #endif

@@ -17,6 +17,12 @@ T blinn_phong_roughness(const T& shininess) {
     return sqrt(sqrt(T(2) / (shininess + T(2))));
 }
 
+template <class T>
+T blinn_phong_shininess(const T& roughness) {
+    const T r2 = roughness * roughness;
+    return clamp(T(2) / max(r2 * r2, T(1e-6)) - T(2), T(1), T(2048));
+}
+
 // (kd (1 - max ks) / pi + ks c (n.h)^p) n.l, p limited to [1, 2048].
 template <class T>
 Vec3<T> blinn_phong(const Vec3<T>& n, const Vec3<T>& v, const Vec3<T>& l, const Vec3<T>& diffuse, const Vec3<T>& specular,

@@ -15,4 +15,10 @@ Vec2<T> encode_octahedral(const Vec3<T>& n) {
     return {p.x >= T(0) ? x : -x, p.y >= T(0) ? y : -y};
 }
 
+template <class T>
+Vec3<T> decode_octahedral(const Vec2<T>& p) {
+    const T z = T(1) - abs(p.x) - abs(p.y), fold = max(-z, T(0));
+    return normalize(Vec3<T>{p.x >= T(0) ? p.x - fold : p.x + fold, p.y >= T(0) ? p.y - fold : p.y + fold, z});
+}
+
 }  // namespace kiln::reference
