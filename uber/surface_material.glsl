@@ -74,16 +74,14 @@ Shading sample_material() {
 }
 
 vec3 shading_normal() {
-    const vec3 n = safe_normalize(world_normal, vec3(0.0, 0.0, 1.0));
+    vec3 n = safe_normalize(world_normal, vec3(0.0, 0.0, 1.0));
 #if NORMAL_MAP
-    const vec3 mapped =
-        apply_normal(tangent_frame(n, world_tangent.xyz, world_tangent.w), decode_normal_unorm8(texture(normal_map, material_uv).xyz));
-#else
-    const vec3 mapped = n;
+    const mat3 frame = tangent_frame(n, world_tangent.xyz, world_tangent.w);
+    n = apply_normal(frame, decode_normal_unorm8(texture(normal_map, material_uv).xyz));
 #endif
 #if TWO_SIDED
-    return gl_FrontFacing ? mapped : -mapped;
+    return gl_FrontFacing ? n : -n;
 #else
-    return mapped;
+    return n;
 #endif
 }

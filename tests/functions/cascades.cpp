@@ -1,51 +1,11 @@
 #include "uber/reference/cascades.h"
-#include "uber/reference/pcf.h"
 
-#include <iomanip>
-#include <sstream>
-
-#include "tests/functions/shadow_maps.h"
+#include "tests/functions/cascade_maps.h"
 
 namespace kiln::test {
 namespace {
 
 using namespace reference;
-
-// Four layers of random blocks of 4 x 4 texels.
-DepthTexture blocks(int size) {
-    DepthTexture out{size, {}};
-    for (int layer = 0; layer < 4; ++layer)
-        for (int y = 0; y < size; ++y)
-            for (int x = 0; x < size; ++x)
-                out.depths.push_back(
-                    static_cast<float>(pixel_hash(static_cast<uint32_t>(x / 4 + 64 * layer), static_cast<uint32_t>(y / 4))));
-    return out;
-}
-
-// fp32 matrices of four slices, as GLSL and as numbers.
-struct Matrices {
-    std::array<Mat4<double>, 4> of;
-    std::string glsl = "const mat4 matrices[4] = mat4[4](";
-    Matrices() {
-        const LightAxes light = light_axes({0.3, -0.8, 0.4});
-        std::ostringstream text;
-        text << std::setprecision(20) << std::fixed;
-        for (int i = 0; i < 4; ++i) {
-            const double end = 10.0 * (i + 1);
-            Mat4<double>& m = of[static_cast<size_t>(i)];
-            m = fit_cascade({0, 0, end / 2}, end, light, 32, 20).clip_of_world;
-            text << (i == 0 ? "" : ", ") << "mat4(";
-            for (int c = 0; c < 4; ++c)
-                for (double* x : {&m.columns[c].x, &m.columns[c].y, &m.columns[c].z, &m.columns[c].w}) {
-                    // Multiples of 2^-20: short decimals that fp32 holds exactly.
-                    *x = std::round(*x * 0x1p20) / 0x1p20;
-                    text << (c == 0 && x == &m.columns[0].x ? "" : ", ") << *x;
-                }
-            text << ")";
-        }
-        glsl += text.str() + ");";
-    }
-};
 
 TEST(Functions, Cascades) {
     Functions cascades("cascades.glsl");
@@ -107,7 +67,7 @@ TEST(Functions, Cascades) {
         },
         number("x", linear(-2, 2)), number("y", linear(-2, 2)), number("z", linear(-0.5, 2)),
         number("w", linear(-0.5, 2).also({0})), integer("layer", 0, 3));
-    static const Matrices matrices;
+    static const Matrices matrices("matrices", cascade_matrix);
     cascades.declare(matrices.glsl);
     cascades
         .test(
@@ -115,14 +75,9 @@ TEST(Functions, Cascades) {
             "30.0, 40.0), 4, 0.2))",
             [compare](auto receiver, auto depth) {
                 using T = decltype(depth);
-                std::array<Mat4<T>, 4> of;
-                for (size_t i = 0; i < 4; ++i)
-                    for (int c = 0; c < 4; ++c) {
-                        const Vec4<double>& v = matrices.of[i].columns[c];
-                        of[i].columns[c] = {T(v.x), T(v.y), T(v.z), T(v.w)};
-                    }
                 const CascadeChoice<T> choice = choose_cascade(depth, T(0.1), Vec4<T>{T(10), T(20), T(30), T(40)}, 4, T(0.2));
-                return cascaded_shadow(compare, of, Vec4<T>{T(1e-4), T(2e-4), T(3e-4), T(4e-4)}, receiver, choice);
+                return cascaded_shadow(compare, matrices.read<T>(), Vec4<T>{T(1e-4), T(2e-4), T(3e-4), T(4e-4)}, receiver,
+                                       choice);
             },
             vector3("receiver", linear(-30, 30)), number("depth", linear(0, 42).also({10, 20, 30, 40})))
         .named("cascaded_shadow");

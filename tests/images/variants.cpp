@@ -108,9 +108,10 @@ Variant surface_variant(const Values& values, const std::vector<std::pair<std::s
     out.values = values;
     std::string fragment_text = text_of("uber/surface.frag", defines);
     for (const auto& [from, to] : edits) {
-        const size_t at = fragment_text.find(from);
+        // Everywhere: of alike texts in files that the variant's axes leave out, none counts.
+        size_t at = fragment_text.find(from);
         EXPECT_NE(at, std::string::npos) << "the shader has no text '" << from << "'";
-        if (at != std::string::npos) fragment_text.replace(at, from.size(), to);
+        for (; at != std::string::npos; at = fragment_text.find(from, at + to.size())) fragment_text.replace(at, from.size(), to);
     }
     for (const auto& [stage, text] :
          {std::pair{Stage::vertex, text_of("uber/surface.vert", defines)}, {Stage::fragment, fragment_text}})

@@ -192,7 +192,7 @@ SurfaceGbuffer<T> surface_gbuffer(const SurfaceAxes& axes, const SurfaceBlocks& 
     return {{s.diffuse.x, s.diffuse.y, s.diffuse.z, model},
             {s.specular.x, s.specular.y, s.specular.z, s.roughness},
             encode_octahedral(n),
-            {unlit.x, unlit.y, unlit.z, T(1)}};
+            {unlit.x, unlit.y, unlit.z, T(axes.lightmap == SurfaceLightmap::none ? 0 : 1)}};
 }
 
 template <class T>
