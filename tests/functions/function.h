@@ -43,7 +43,7 @@
 // Textures: Functions::texture binds one that all calls of the file see under its name; the reference's lambda captures a
 // callable that stands for it.
 //
-// One line a function goes to standard output, for people and for tools/function_errors.py, which makes a table of them in
+// One line a function goes to standard output, for people and for tools/function_table.py, which makes a table of them in
 // uber/README.md:
 //
 //     KILN_FUNCTION <name> <worst absolute> <worst relative> <worst ulp> <share of the bound> key=value...
@@ -161,7 +161,7 @@ public:
         return Typed(f);
     }
 
-    // Runs everything; every breach is a failure of the current test.
+    // Runs everything; every breach is a failure of the current test. Under --costs (costs.h): measures, and gives nothing back.
     std::vector<Figures> run();
     // The same, with the breaches in `breaches`. For the harness's own tests.
     std::vector<Figures> evaluate(std::vector<std::string>& breaches);
@@ -169,6 +169,8 @@ public:
     std::string shader() const;  // the generated text
 
 private:
+    std::string prelude() const;  // what stands before the harness's own text
+    void measure() const;
     template <class Shape>
     static void add(FunctionTest& f, const Argument<Shape>& argument) {
         f.arguments.push_back({argument.name, Shape::glsl(), Shape::read(f.words), f.words, Shape::words, argument.domain});
@@ -178,6 +180,7 @@ private:
     std::vector<std::string> files_;
     std::string declared_, textures_;
     std::vector<NamedImage> images_;
+    std::vector<bool> comparing_;
     std::vector<std::unique_ptr<FunctionTest>> tests_;
 };
 

@@ -5,6 +5,7 @@
 #include "compiler/base/files.h"
 #include "compiler/device/compute.h"
 #include "tests/device/glsl.h"
+#include "tests/functions/costs.h"
 #include "tests/functions/samples.h"
 #include "tests/functions/verdict.h"
 
@@ -53,11 +54,17 @@ void Functions::texture(const std::string& declaration, std::shared_ptr<const Im
     const uint32_t binding = 2 + static_cast<uint32_t>(images_.size());
     textures_ += "layout(set = 0, binding = " + std::to_string(binding) + ") uniform " + declaration + ";\n";
     images_.push_back({declaration.substr(declaration.find_last_of(' ') + 1), std::move(image), sampler});
+    comparing_.push_back(declaration.find("Shadow ") != std::string::npos);
+}
+
+std::string Functions::prelude() const {
+    std::string out = "#version 450\n";
+    for (const std::string& file : files_) out += library_text(file);
+    return out + textures_ + declared_;
 }
 
 std::string Functions::shader() const {
-    std::string out = "#version 450\n";
-    for (const std::string& file : files_) out += library_text(file);
+    std::string out = prelude();
     out += "layout(local_size_x = " + std::to_string(group_size) +
            ") in;\n"
            "layout(std430, set = 0, binding = 0) readonly buffer KilnArguments { uint kiln_arguments[]; };\n"
@@ -65,8 +72,7 @@ std::string Functions::shader() const {
            "layout(push_constant) uniform KilnTask { uint kiln_function; uint kiln_samples; };\n"
            "uint kiln_first;\n"
            "uint kiln_word(uint at) { return kiln_arguments[kiln_first + at]; }\n"
-           "float kiln_float(uint at) { return uintBitsToFloat(kiln_word(at)); }\n" +
-           textures_ + declared_;
+           "float kiln_float(uint at) { return uintBitsToFloat(kiln_word(at)); }\n";
     std::string cases;
     for (size_t t = 0; t < tests_.size(); ++t) {
         const FunctionTest& f = *tests_[t];
@@ -128,7 +134,23 @@ std::vector<Figures> Functions::evaluate(std::vector<std::string>& breaches) {
     return out;
 }
 
+void Functions::measure() const {
+    for (const auto& f : tests_) {
+        const Result<Cost> cost = measure_cost(*f, {prelude(), images_, comparing_});
+        if (!cost.ok()) {
+            ADD_FAILURE() << f->name << ": " << cost.error().message;
+            continue;
+        }
+        std::printf("KILN_COST %s %.3g %.3g file=%s\n", f->name.c_str(), cost->ns, cost->jit_ms, files_.front().c_str());
+        std::fflush(stdout);
+    }
+}
+
 std::vector<Figures> Functions::run() {
+    if (costs_wanted()) {
+        measure();
+        return {};
+    }
     std::vector<std::string> breaches;
     std::vector<Figures> out = evaluate(breaches);
     for (const Figures& f : out) print(f, files_.front());

@@ -107,4 +107,10 @@ std::vector<uint32_t> make_samples(const FunctionTest& function) {
     return maker.take();
 }
 
+std::vector<uint32_t> random_arguments(const FunctionTest& function) {
+    Maker maker(function);
+    maker.random();
+    return maker.take();
+}
+
 }  // namespace kiln::test
