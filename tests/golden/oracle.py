@@ -2,7 +2,6 @@
 
 A case is a manifest as Python values. Rules are read by the small evaluator here, which shares nothing with kiln's.
 """
-import itertools
 import pathlib
 import re
 import subprocess
@@ -93,11 +92,26 @@ class Rule:
 
 def legal_variants(axes, rules):
     """Every legal combination as a dict axis -> number. rules: [("forbid" | "require", text)]."""
-    compiled = [(kind == "forbid", Rule(text, axes).tree) for kind, text in rules]
-    for combination in itertools.product(*(numbers(a).values() for a in axes.values())):
-        v = dict(zip(axes, combination))
-        if all(bool(tree(v)) != forbid for forbid, tree in compiled):
-            yield v
+    # A rule is asked as soon as all of its axes have values, so that whole branches fall away.
+    names = list(axes)
+    asked_at = {name: [] for name in names}
+    for kind, text in rules:
+        rule = Rule(text, axes)
+        last = max((names.index(t) for t in rule.tokens if t in axes), default=0)
+        asked_at[names[last]].append((kind == "forbid", rule.tree))
+
+    def extend(v):
+        if len(v) == len(names):
+            yield dict(v)
+            return
+        name = names[len(v)]
+        for number in numbers(axes[name]).values():
+            v[name] = number
+            if all(bool(tree(v)) != forbid for forbid, tree in asked_at[name]):
+                yield from extend(v)
+        v.pop(name)
+
+    yield from extend({})
 
 
 def declared(axes):

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Writes renderer/expected.json and renderer_*/expected.json: what `kiln count` must say of manifests/renderer.yaml and of its
-scenes. Every combination of every shader is listed and asked, every text is preprocessed by glslc (oracle.py); takes minutes.
-Needs PyYAML, which the tests themselves do not.
+scenes: declared, legal and needed variants by listing (oracle.py). With --classes every text is preprocessed by glslc as well,
+which takes half an hour. Needs PyYAML, which the tests themselves do not.
 """
 import json
 import pathlib
+import sys
 
 import yaml
 
@@ -54,6 +55,10 @@ def needed_by(scene, shader, axes, variants):
     return out
 
 
+def with_stages(entry, stages):
+    return {**entry, "stages": stages} if stages else entry
+
+
 def write(folder, document):
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "expected.json").write_text(json.dumps(document, indent=2) + "\n")
@@ -72,20 +77,24 @@ def main():
         variants = list(oracle.legal_variants(axes, [r for r in every if applies(r, axes, manifest["axes"])]))
 
         def stages(chosen):
+            if "--classes" not in sys.argv:
+                return []
             return [{"stage": s, "classes": str(oracle.classes(files, f, STAGES[s], axes, chosen, shader.get("defines", {}).items()))}
                     for s, f in shader["stages"].items()]
 
         counts = {"name": shader["name"], "declared": str(oracle.declared(axes)), "legal": str(len(variants))}
-        shaders.append({**counts, "needed": str(len(variants)), "stages": stages(variants)})
+        shaders.append(with_stages({**counts, "needed": str(len(variants))}, stages(variants)))
         for name, scene in scenes.items():
             needed = needed_by(scene, shader["name"], axes, variants)
             chosen = [variants[i] for i in sorted(needed)]
             entry = {**counts, "needed": str(len(needed))}
-            in_scene[name].append({**entry, "stages": stages(chosen)} if chosen else entry)
+            in_scene[name].append(with_stages(entry, stages(chosen) if chosen else []))
 
     def total(entries):
         sums = {k: str(sum(int(s[k]) for s in entries)) for k in ("declared", "legal", "needed")}
-        return {**sums, "classes": str(sum(int(t["classes"]) for s in entries for t in s.get("stages", [])))}
+        if "--classes" in sys.argv:
+            sums["classes"] = str(sum(int(t["classes"]) for s in entries for t in s.get("stages", [])))
+        return sums
 
     write(HERE / "renderer", {"manifest": "../../../manifests/renderer.yaml", "shaders": shaders, "total": total(shaders)})
     for name, entries in in_scene.items():
