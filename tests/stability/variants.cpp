@@ -48,18 +48,27 @@ struct Pipeline {
     uint32_t count = 0;             // location of the watched stage's count
 };
 
-// A vertex stage that hands vertex data on: location i + 1 goes to what the fragment stage reads.
+// A vertex stage that hands vertex data on: input fed_X goes to what the fragment stage reads as X.
 StageCode feeding(const std::vector<Varying>& inputs) {
     std::string text = "#version 450\nlayout(location = 0) in vec3 place;\n", body;
     uint32_t i = 1;
     for (const Varying& v : inputs) {
-        const std::string type = v.type.rows == 1 ? "float" : "vec" + std::to_string(v.type.rows), n = std::to_string(i);
-        text += "layout(location = " + n + ") in " + type + " from" + n + ";\nlayout(location = " + std::to_string(v.location) +
-                ") out " + type + " to" + n + ";\n";
-        body += "    to" + n + " = from" + n + ";\n";
-        ++i;
+        const std::string type = v.type.rows == 1 ? "float" : "vec" + std::to_string(v.type.rows), out = "to_" + v.name;
+        text += "layout(location = " + std::to_string(i++) + ") in " + type + " fed_" + v.name +
+                ";\nlayout(location = " + std::to_string(v.location) + ") out " + type + " " + out + ";\n";
+        body += "    " + out + " = fed_" + v.name + ";\n";
     }
     return compile(Stage::vertex, text + "void main() {\n    gl_Position = vec4(place.xy, 0.5, 1.0);\n" + body + "}\n");
+}
+
+// What kiln makes of a stage: without what nothing reaches, and optimised. The reflection is that of the result.
+StageCode built(const Words& words, Optimise optimise) {
+    Options options;
+    options.optimise = optimise;
+    auto out = spirv_prune(words, options);
+    if (out.ok() && optimise != Optimise::none) out = spirv_optimise(*out, options);
+    EXPECT_TRUE(out.ok()) << (out.ok() ? "" : out.error().message);
+    return stage_of(out.ok() ? *out : words);
 }
 
 Pipeline make(const std::string& name, const std::string& vertex, const std::string& fragment, const std::string& defines) {
@@ -74,15 +83,9 @@ Pipeline make(const std::string& name, const std::string& vertex, const std::str
                                              "#undef main\nlayout(location = " + std::to_string(p.count) +
                                              ") out vec4 watched_count;\nvoid main() {\n    watched_main();\n    watched_count = "
                                              "vec4(float(watched_non_finite));\n}\n");
-    // Optimised the published numbers stay, and the reflection with them: what is unused is bound all the same.
-    p.optimised = p.stages[1];
-    const Options options;
-    const auto pruned = spirv_prune(p.stages[1].words, options);
-    EXPECT_TRUE(pruned.ok());
-    if (!pruned.ok()) return p;
-    auto words = spirv_optimise(*pruned, options);
-    EXPECT_TRUE(words.ok());
-    if (words.ok()) p.optimised.words = std::move(*words);
+    p.optimised = built(p.stages[1].words, Optimise::performance);
+    p.watched = built(p.watched.words, Optimise::none);
+    p.stages[0] = built(p.stages[0].words, Optimise::performance);
     return p;
 }
 
@@ -128,8 +131,9 @@ std::vector<Digits> covering(Space& space, bool pairs, const Wanted& wanted) {
     return out;
 }
 
-// Of the manifest's shader `surface`; those of the lecture's forms or the stable ones. The depth pass computes nothing.
-std::vector<Pipeline> pipelines(const std::string& manifest_name, bool pairs, bool lecture) {
+// Of these shaders; those of the lecture's forms or the stable ones. The depth pass computes nothing.
+std::vector<Pipeline> pipelines(const std::string& manifest_name, const std::set<std::string>& shaders, bool pairs,
+                                bool lecture) {
     std::vector<Pipeline> out;
     DiskFiles files;
     Diags diags;
@@ -137,7 +141,7 @@ std::vector<Pipeline> pipelines(const std::string& manifest_name, bool pairs, bo
     EXPECT_TRUE(manifest.has_value()) << manifest_name;
     if (!manifest) return out;
     for (const kiln::Shader& shader : manifest->shaders) {
-        if (shader.name != "surface") continue;
+        if (!shaders.count(shader.name)) continue;
         std::unique_ptr<Space> space = build_space(*manifest, shader, diags);
         EXPECT_NE(space, nullptr);
         if (space == nullptr) return out;
@@ -258,6 +262,30 @@ std::vector<Extremes> extremes() {
     return out;
 }
 
+// And what the renderer's further systems have.
+std::vector<Extremes> renderer_extremes() {
+    std::vector<Extremes> out = extremes();
+    const auto add = [&](const std::string& name, std::map<std::string, Numbers> members, std::optional<float> textures = {}) {
+        out.push_back({name, std::move(members), textures, false});
+    };
+    add("cascades that end at the viewer", {{"cascade_ends", {1, 1, 1, 1}}, {"cascade_start", {1}}, {"cascade_band", {0}}});
+    add("no cascade reaches", {{"cascade_ends", {0}}, {"cascade_band", {1}}});
+    add("cascades behind the light",
+        {{"cascade_ends", {100}}, {"cascade_view_projection", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1}}});
+    add("no cascade matrices",
+        {{"cascade_ends", {100}}, {"cascade_view_projection", {0}}, {"cascade_plane_of_world", {0}}, {"cascade_filter", {0}}});
+    add("light without a size", {{"light_size", {0}}, {"shadow_filter", {0}}, {"shadow_plane_of_world", {0}}});
+    add("huge light", {{"light_size", {1e6}}, {"shadow_filter", {100}}, {"moments_levels", {1}}});
+    add("moments without variance", {{"moments_least", {1e-30}}, {"moments_bleeding", {0}}, {"moments_reference", {0}}}, 0.0f);
+    add("moments of one", {{"moments_least", {1e-9}}, {"moments_bleeding", {0.99}}, {"moments_reference", {1}}}, 1.0f);
+    add("boxes of no size", {{"reflection_box_min", {0}}, {"reflection_box_max", {0}}, {"reflection_centre", {0}}});
+    add("one level, one texel", {{"environment_levels", {1}}, {"split_sum_size", {1}}});
+    add("negative sky and probes", {{"sky_sh", {-1}}, {"probe_sh", {-1}}, {"ambient_irradiance", {0}}});
+    add("bright sky and probes", {{"sky_sh", {1e20}}, {"probe_sh", {1e20}}});
+    add("one probe", {{"probe_count", {1}}, {"probe_inverse_spacing", {0}}});
+    return out;
+}
+
 // Vertex data of the varyings by name: one combination a cell of the grid.
 Numbers fed_value(const std::string& name, uint32_t rows, uint32_t cell) {
     static const std::vector<Numbers> normals{{0, 0, 0},     {0, 0, 1},     {0, 0, -1},      {0.6, 0, 0.8},   {-0.3, -0.2, -2},
@@ -321,11 +349,9 @@ Inputs inputs_of(const std::vector<StageCode>& stages, const Extremes& e, bool f
     set_members(out, stages, members, ignored);
     set_members(out, stages, e.members, used);
     if (e.textures) set_textures(out, *e.textures);
-    if (!fed) return out;
-    uint32_t location = 1;
-    for (const Varying& v : stages[1].reflection.inputs) {
+    for (const Varying& v : stages[0].reflection.inputs)
         for (Attribute& a : out.attributes) {
-            if (a.location != location) continue;
+            if (a.location != v.location || v.name.rfind("fed_", 0) != 0) continue;
             std::vector<float> data;
             for (uint32_t vertex = 0; vertex < out.vertices; ++vertex) {
                 const Numbers n = fed_value(v.name, a.components, vertex / 6);
@@ -333,8 +359,6 @@ Inputs inputs_of(const std::vector<StageCode>& stages, const Extremes& e, bool f
             }
             a.data = bytes_of(data);
         }
-        ++location;
-    }
     return out;
 }
 
@@ -386,26 +410,22 @@ struct Kind {
 };
 
 std::vector<Kind> kinds_of(const Pipeline& p) {
-    return {{"optimised", {p.stages[0], p.optimised}, false},
-            {"watched", {p.stages[0], p.watched}, false},
-            {"fed, optimised", {p.fed, p.optimised}, true},
-            {"fed, watched", {p.fed, p.watched}, true}};
+    return {{"optimised", {p.stages[0], p.optimised}, false}, {"fed, watched", {p.fed, p.watched}, true}};
 }
 
 std::string count_of(const Pipeline& p) { return "output " + std::to_string(p.count); }
 
-void expect_finite_pixels(const std::string& manifest, bool pairs) {
-    const std::vector<Extremes> all = extremes();
+void expect_finite_pixels(const std::string& manifest, const std::vector<Extremes>& all) {
     std::set<std::string> used;
     uint64_t pixels = 0;
-    const std::vector<Pipeline> pipes = pipelines(manifest, pairs, false);
+    const std::vector<Pipeline> pipes = pipelines(manifest, {"surface", "surface_local"}, true, false);
     for (const Pipeline& p : pipes)
         for (const Kind& kind : kinds_of(p)) {
             const std::vector<Seen> seen = draw(kind.stages, all, kind.fed, count_of(p), used);
             for (size_t i = 0; i < all.size(); ++i) {
                 const std::string where = p.name + " (" + kind.name + "): " + all[i].name;
                 EXPECT_EQ(seen[i].non_finite, 0u) << where;
-                if (p.name.find("pass=forward") != std::string::npos) {
+                if (p.name.find("pass=gbuffer") == std::string::npos && p.name.find("pass=velocity") == std::string::npos) {
                     EXPECT_EQ(seen[i].negative, 0u) << where;
                 }
                 if (!all[i].infinite_squares) {
@@ -422,7 +442,32 @@ void expect_finite_pixels(const std::string& manifest, bool pairs) {
         for (const auto& [member, numbers] : e.members) EXPECT_TRUE(used.count(member)) << "no variant has " << member;
 }
 
-TEST(Variants, FiniteForAnyInput) { expect_finite_pixels("surface.yaml", true); }
+TEST(Variants, FiniteForAnyInput) { expect_finite_pixels("surface.yaml", extremes()); }
+
+TEST(Variants, FiniteForAnyInputOfTheRenderer) { expect_finite_pixels("renderer.yaml", renderer_extremes()); }
+
+// The lecture's materials in whole variants: light that is negative, or not a number, or was one on the way into a clamp.
+TEST(Variants, LecturesMaterialsFail) {
+    const std::vector<Extremes> all = extremes();
+    std::set<std::string> used;
+    size_t looked = 0;
+    for (const Pipeline& p : pipelines("renderer.yaml", {"surface_lecture"}, true, true)) {
+        const bool lit = p.name.find("light=none") == std::string::npos;
+        const bool pbr = p.name.find("material=pbr_lecture") != std::string::npos;
+        if (!lit || (!pbr && p.name.find("material=blinn_phong_lecture") == std::string::npos)) continue;
+        uint64_t negative = 0, not_a_number = 0;
+        for (const Seen& seen : draw({p.fed, p.watched}, all, true, count_of(p), used))
+            negative += seen.negative, not_a_number += seen.non_finite + seen.hidden;
+        std::printf("KILN_VARIANTS %s: negative %llu, not finite %llu\n", p.name.c_str(),
+                    static_cast<unsigned long long>(negative), static_cast<unsigned long long>(not_a_number));
+        EXPECT_GT(not_a_number, 0u) << p.name;
+        if (pbr) {
+            EXPECT_GT(negative, 0u) << p.name;
+        }
+        ++looked;
+    }
+    EXPECT_GE(looked, 2u);
+}
 
 // What the loader is there for: the same numbers without it reach the pixels, or hide in a clamp, and this suite sees both.
 TEST(Variants, WhatIsNotSanitisedShows) {
@@ -433,7 +478,7 @@ TEST(Variants, WhatIsNotSanitisedShows) {
         {"emission", {{"emissive", {nan}}}, {}, false}};
     std::set<std::string> used;
     uint64_t bright = 0;
-    for (const Pipeline& p : pipelines("surface.yaml", false, false)) {
+    for (const Pipeline& p : pipelines("surface.yaml", {"surface"}, false, false)) {
         if (p.name.find("pass=forward") == std::string::npos || p.name.find("light=none") != std::string::npos) continue;
         const std::vector<Seen> seen = draw({p.fed, p.watched}, all, true, count_of(p), used);
         bright += seen[0].non_finite;
