@@ -7,7 +7,7 @@ layout(std140, set = 0, binding = 0) uniform View {
     mat4 previous_view_projection;    // of the last frame, with that frame's jitter
     vec4 jitter;                      // xy: this frame's offset of the projection in NDC, zw: the last frame's
     vec3 camera_position;             // world
-    vec3 ambient_irradiance;          // W/m2 (or lux), on every receiver alike; >= 0
+    vec3 ambient_irradiance;          // W/m2 (or lux), on every receiver alike; [0, 1e26]
 };
 
 layout(std140, set = 0, binding = 1) uniform Light {
@@ -15,7 +15,7 @@ layout(std140, set = 0, binding = 1) uniform Light {
     float light_range;        // metres, > 0; the light ends here; point and spot
     vec3 light_direction;     // unit, the way the light travels; directional and spot
     float light_cos_inner;    // cosine of the half-angle of full light; spot
-    vec3 light_intensity;     // linear rgb, >= 0; lux for directional, candela for point and spot
+    vec3 light_intensity;     // linear rgb, [0, 1e26]; lux for directional, candela for point and spot
     float light_cos_outer;    // cosine of the half-angle where light ends; spot
 };
 
@@ -30,7 +30,7 @@ layout(std140, set = 0, binding = 2) uniform Shadow {
 layout(std140, set = 1, binding = 0) uniform Material {
     vec4 base_factor;               // rgb: multiplies base_map; a: least opacity that is drawn; alpha_test
     vec4 specular_factor;           // rgb: multiplies specular_map; blinn_phong and pbr_sg
-    vec3 emissive;                  // linear radiance, >= 0
+    vec3 emissive;                  // linear radiance, [0, 1e26]
     float dielectric_specular;      // [0, 1], 0.5 is F0 = 0.04; pbr_mr, disney's environment
     float shininess;                // Blinn-Phong exponent, [1, 2048]; blinn_phong
     float roughness_factor;         // multiplies roughness_map; pbr_mr, disney

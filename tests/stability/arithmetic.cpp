@@ -65,6 +65,22 @@ TEST(Stability, Row14_IntensitiesUpToTheLargestFloat) {
             "outside [0, 1], or falling");
         EXPECT_EQ(r.at(last), 1.0) << r.name;
     }
+    for (const Raw& r : raw({{"tonemap.glsl"}, "", "", {}}, samples,
+                            {{"tone_reinhard", "tone_reinhard(vec3(x[0]))"},
+                             {"tone_reinhard_white", "tone_reinhard_white(vec3(x[0]), 4.0)"},
+                             {"tone_aces", "tone_aces(vec3(x[0]))"},
+                             {"limit_half", "limit_half(vec3(x[0])) / 65504.0"},
+                             {"exposed", "tone_reinhard(limit_half(vec3(x[0])) * exposure_from_mean(x[0]))"}})) {
+        EXPECT_EQ(r.non_finite(), 0u) << r.name;
+        const bool rises = r.name.find("exposed") == std::string::npos;
+        expect_each(
+            r, samples,
+            [&](const Raw& q, size_t i) {  // 3 ulp: a quotient's rounding, where the curve is flat
+                return q.at(i) >= 0 && q.at(i) <= 1 && (i == 0 || !rises || q.at(i) >= q.at(i - 1) * (1 - 3 * 0x1p-23)) &&
+                       (q.hidden[i] == 0 || std::isinf(samples[i][0]));
+            },
+            "outside [0, 1], or falling");
+    }
     // A store in half precision: infinite from 65520 on, unless limited.
     for (const Raw& r : raw({{"math.glsl"}, "", "", {}}, samples,
                             {{"stored", "unpackHalf2x16(packHalf2x16(vec2(x[0], 0.0))).x"},
