@@ -114,19 +114,26 @@ TEST(DiskStoreProcesses, KilledWritersLeaveNothingHalfWritten) {
     const TestFolder folder;
     std::mt19937 random(20);
     for (uint32_t round = 0; round < 25; ++round) {
+        int written[2];  // a byte a pair of entries: a busy machine must not kill writers before they have written
+        ASSERT_EQ(::pipe(written), 0);
         const pid_t child = ::fork();
         ASSERT_GE(child, 0);
         if (child == 0) {
             auto store = DiskStore::open(folder.path());
             for (uint32_t i = 0;; ++i) {
+                if (i != 0 && i < 300) (void)!::write(written[1], "", 1);
                 const std::string text = blob(round * 1000 + i % 300);
                 (void)(*store)->put(Keyspace::blob, sha256(as_bytes(text)), as_bytes(text)).ok();
                 const Digest key = sha256(as_bytes(text));
                 (void)(*store)->put(Keyspace::action, key, as_bytes(record(key, i % 8))).ok();
             }
         }
-        ::usleep(1000 + static_cast<useconds_t>(random() % 20'000));
+        ::close(written[1]);
+        char byte;
+        for (uint32_t pairs = 5 + random() % 15; pairs != 0; --pairs) ASSERT_EQ(::read(written[0], &byte, 1), 1);
+        ::usleep(static_cast<useconds_t>(random() % 5'000));
         ::kill(child, SIGKILL);
+        ::close(written[0]);
         int status = 0;
         ASSERT_EQ(::waitpid(child, &status, 0), child);
         EXPECT_TRUE(WIFSIGNALED(status));
