@@ -130,7 +130,7 @@ TEST(DiskStoreProcesses, KilledWritersLeaveNothingHalfWritten) {
         }
         ::close(written[1]);
         char byte;
-        for (uint32_t pairs = 5 + random() % 15; pairs != 0; --pairs) ASSERT_EQ(::read(written[0], &byte, 1), 1);
+        for (uint64_t pairs = 5 + random() % 15; pairs != 0; --pairs) ASSERT_EQ(::read(written[0], &byte, 1), 1);
         ::usleep(static_cast<useconds_t>(random() % 5'000));
         ::kill(child, SIGKILL);
         ::close(written[0]);
