@@ -36,7 +36,7 @@ Scene square(const V3& eye) {
     Scene s = scene(true, false);
     s.mesh = {};
     for (const auto& [x, z] : {std::pair{-50.0, -50.0}, {-50.0, 50.0}, {50.0, 50.0}, {-50.0, -50.0}, {50.0, 50.0}, {50.0, -50.0}})
-        s.mesh.vertices.push_back({{x, 0, z}, {0, 1, 0}, {0.5, 0.5}, {0.5, 0.5}});
+        s.mesh.vertices.push_back({{x, 0, z}, {0, 1, 0}, {0.5, 0.5}, {0.5, 0.5}, {1, 0, 0, 1}});
     s.mesh.body = {plane, plane};
     s.blocks.model = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
     s.blocks.camera_position = f32(eye);

@@ -1,9 +1,13 @@
 #include "tests/images/variants.h"
 
+#include <set>
+
 #include "compiler/device/compute.h"
 #include "compiler/pass.h"
+#include "compiler/toolchain/spirv.h"
 #include "compiler/validate/validate_tasks.h"
 #include "tests/device/glsl.h"
+#include "uber/reference/random.h"
 
 namespace kiln::test {
 
@@ -32,35 +36,57 @@ std::string text_of(const std::string& path, const std::string& defines) {
     return out;
 }
 
-// By the manifest's order of values.
-int place_of(const std::string& value, std::initializer_list<const char*> values) {
-    int i = 0;
-    for (const char* v : values) {
-        if (value == v) return i;
-        ++i;
-    }
-    ADD_FAILURE() << "no axis value " << value;
-    return 0;
+// As the pass makes it: pruned and optimised.
+StageCode shipped(Stage stage, const std::string& text) {
+    const Options options;
+    const Compiled raw = glsl_compile(stage, text, options);
+    EXPECT_FALSE(raw.words.empty()) << (raw.messages.empty() ? "" : raw.messages.front().text);
+    if (raw.words.empty()) return {};
+    const Result<Words> pruned = spirv_prune(raw.words, options);
+    EXPECT_TRUE(pruned.ok()) << (pruned.ok() ? "" : pruned.error().message);
+    if (!pruned.ok()) return {};
+    const Result<Words> words = spirv_optimise(*pruned, options);
+    EXPECT_TRUE(words.ok()) << (words.ok() ? "" : words.error().message);
+    return words.ok() ? stage_of(*words) : StageCode();
 }
 
-struct AxisText {
-    const char* axis;
-    const char* macro;
-    std::initializer_list<const char*> values;
-};
-constexpr std::initializer_list<const char*> light_values = {"none", "directional", "point", "spot"},
-                                             pass_values = {"forward", "gbuffer", "depth", "velocity"},
-                                             material_values = {"blinn_phong", "pbr_mr", "pbr_sg"},
-                                             lightmap_values = {"none", "flat", "sh_lq", "sh_hq"},
-                                             bool_values = {"false", "true"}, shadow_values = {"none", "hard"};
+// The manifest with its spaces, kept.
+const Build& spaces_of(const std::string& manifest) {
+    static std::map<std::string, Build> known;
+    const auto found = known.find(manifest);
+    if (found != known.end()) return found->second;
+    DiskFiles files;
+    MemoryStore store;
+    const std::unique_ptr<Toolchain> tools = make_toolchain();
+    const Jobs jobs(1);
+    PassContext context{files, store, *tools, jobs, {}};
+    BuildOptions options;
+    options.manifest = std::string(KILN_SOURCE_DIR) + "/manifests/" + manifest;
+    Build& build = known[manifest];
+    pass_spaces(build, options, context);
+    EXPECT_TRUE(build.ok()) << manifest;
+    return build;
+}
 
-std::string value_of(const Values& values, const std::string& axis, const std::string& otherwise) {
-    const auto found = values.find(axis);
-    return found == values.end() ? otherwise : found->second;
+// A shader of a manifest, and its variants.
+std::pair<const Shader*, Space*> find_shader(const std::string& manifest, const std::string& name) {
+    const Build& build = spaces_of(manifest);
+    for (size_t i = 0; build.manifest && i < build.manifest->shaders.size() && i < build.spaces.size(); ++i)
+        if (build.manifest->shaders[i].name == name) return {&build.manifest->shaders[i], build.spaces[i].get()};
+    ADD_FAILURE() << manifest << " has no shader " << name;
+    return {};
 }
 
 int place_of(const Values& values, const std::string& axis, std::initializer_list<const char*> names) {
-    return place_of(value_of(values, axis, *names.begin()), names);
+    const auto found = values.find(axis);
+    if (found == values.end()) return 0;
+    int i = 0;
+    for (const char* v : names) {
+        if (found->second == v) return i;
+        ++i;
+    }
+    ADD_FAILURE() << "axis " << axis << " has no value " << found->second;
+    return 0;
 }
 
 }  // namespace
@@ -97,35 +123,84 @@ std::vector<Variant> pipelines_of(const std::string& manifest) {
     return out;
 }
 
-Variant surface_variant(const Values& values, const std::vector<std::pair<std::string, std::string>>& edits) {
-    const std::pair<std::string, int> macros[] = {
-        {"LIGHT_TYPE", place_of(values, "light", light_values)},     {"PASS", place_of(values, "pass", pass_values)},
-        {"MATERIAL", place_of(values, "material", material_values)}, {"LIGHTMAP", place_of(values, "lightmap", lightmap_values)},
-        {"TWO_SIDED", place_of(values, "two_sided", bool_values)},   {"SHADOW", place_of(values, "shadow", shadow_values)}};
-    std::string defines;
-    for (const auto& [macro, number] : macros) defines += "#define " + macro + " " + std::to_string(number) + "\n";
+Variant variant_of(const std::string& manifest, const std::string& shader, const Values& values, const Edits& edits) {
+    const auto [from, space] = find_shader(manifest, shader);
     Variant out;
     out.values = values;
-    std::string fragment_text = text_of("uber/surface.frag", defines);
-    for (const auto& [from, to] : edits) {
-        // Everywhere: of alike texts in files that the variant's axes leave out, none counts.
-        size_t at = fragment_text.find(from);
-        EXPECT_NE(at, std::string::npos) << "the shader has no text '" << from << "'";
-        for (; at != std::string::npos; at = fragment_text.find(from, at + to.size())) fragment_text.replace(at, from.size(), to);
+    if (from == nullptr) return out;
+    std::string defines;
+    for (const auto& [macro, body] : from->defines) defines += "#define " + macro + " " + body + "\n";
+    for (const Axis& axis : space->axes) {
+        const auto wanted = values.find(axis.name);
+        const AxisValue* value = &axis.values.front();
+        for (const AxisValue& v : axis.values)
+            if (wanted != values.end() && v.name == wanted->second) value = &v;
+        EXPECT_TRUE(wanted == values.end() || value->name == wanted->second) << axis.name << " " << wanted->second;
+        out.values[axis.name] = value->name;
+        if (axis.kind != AxisKind::defined || value->number != 0)
+            defines += "#define " + axis.macro + " " + std::to_string(value->number) + "\n";
+        out.name += (out.name.empty() ? "" : " ") + axis.name + "=" + value->name;
     }
-    for (const auto& [stage, text] :
-         {std::pair{Stage::vertex, text_of("uber/surface.vert", defines)}, {Stage::fragment, fragment_text}})
-        out.stages.push_back(compile(stage, text));
+    for (const StageFile& file : from->stages) {
+        std::string text = text_of("uber/" + file.file, defines);
+        for (const auto& [what, by] : edits) {
+            if (file.stage != Stage::fragment) continue;
+            size_t at = text.find(what);
+            EXPECT_NE(at, std::string::npos) << "the shader has no text '" << what << "'";
+            for (; at != std::string::npos; at = text.find(what, at + by.size())) text.replace(at, what.size(), by);
+        }
+        out.stages.push_back(shipped(file.stage, text));
+    }
+    return out;
+}
+
+std::vector<Values> pairwise(const std::string& manifest, const std::string& shader, uint64_t seed) {
+    const auto [from, space] = find_shader(manifest, shader);
+    std::vector<Values> out;
+    if (from == nullptr) return out;
+    std::set<std::array<size_t, 4>> seen;
+    reference::Random random(seed);
+    Diagram& diagram = *space->diagram;
+    const auto digits = [&](size_t axis) { return static_cast<uint32_t>(space->axes[axis].values.size()); };
+    for (uint32_t a = 0; a < space->axes.size(); ++a)
+        for (uint32_t b = a; b < space->axes.size(); ++b)
+            for (uint32_t i = 0; i < digits(a); ++i)
+                for (uint32_t j = 0; j < digits(b); ++j) {
+                    if (seen.count({a, i, b, j}) != 0 || (a == b && i != j)) continue;
+                    const Set both = diagram.both(space->legal, diagram.both(diagram.where(a, i), diagram.where(b, j)));
+                    const Count count = diagram.count(both);
+                    if (count == Count()) continue;
+                    const double place = random() * std::stod(count.decimal());
+                    std::optional<Digits> one = diagram.unrank(both, Count(static_cast<uint64_t>(place)));
+                    if (!one) one = diagram.witness(both);
+                    Values values;
+                    for (size_t x = 0; x < one->size(); ++x) values[space->axes[x].name] = space->axes[x].values[(*one)[x]].name;
+                    for (size_t x = 0; x < one->size(); ++x)
+                        for (size_t y = x; y < one->size(); ++y) seen.insert({x, (*one)[x], y, (*one)[y]});
+                    out.push_back(values);
+                }
     return out;
 }
 
 SurfaceAxes axes_of(const Values& values) {
     SurfaceAxes a;
-    a.light = static_cast<SurfaceLight>(place_of(values, "light", light_values));
-    a.material = static_cast<SurfaceMaterial>(place_of(values, "material", material_values));
-    a.lightmap = static_cast<SurfaceLightmap>(place_of(values, "lightmap", lightmap_values));
-    a.two_sided = place_of(values, "two_sided", bool_values) == 1;
-    a.shadow = place_of(values, "shadow", shadow_values) == 1;
+    const auto yes = [&](const char* axis) { return place_of(values, axis, {"false", "true"}) == 1; };
+    a.light = static_cast<SurfaceLight>(place_of(values, "light", {"none", "directional", "point", "spot"}));
+    a.material = static_cast<SurfaceMaterial>(
+        place_of(values, "material",
+                 {"blinn_phong", "pbr_mr", "pbr_sg", "disney", "blinn_phong_raw", "blinn_phong_lecture", "pbr_lecture"}));
+    a.lightmap = static_cast<SurfaceLightmap>(place_of(values, "lightmap", {"none", "flat", "sh_lq", "sh_hq", "sh_lecture"}));
+    a.shadow = static_cast<SurfaceShadow>(
+        place_of(values, "shadow", {"none", "hard", "pcf3", "pcf5", "pcf7", "pcss", "vsm", "vssm", "lecture"}));
+    a.probes = static_cast<SurfaceProbes>(place_of(values, "probes", {"none", "sh_l1", "sh_l2"}));
+    a.reflection = static_cast<SurfaceReflection>(place_of(values, "reflection", {"none", "box", "blended"}));
+    a.cascades = 1 + place_of(values, "cascades", {"1", "2", "3", "4"});
+    a.ibl = place_of(values, "ibl", {"none", "split_sum"}) == 1;
+    a.two_sided = yes("two_sided");
+    a.alpha_test = yes("alpha_test");
+    a.normal_map = yes("normal_map");
+    a.hammon = place_of(values, "geometry", {"height_correlated", "hammon"}) == 1;
+    a.mediump = place_of(values, "precision", {"fp32", "mediump"}) == 1;
     return a;
 }
 
@@ -191,17 +266,20 @@ Points drawn_points(const StageCode& vertex, const NamedInputs& inputs, const Po
             if (v.name == "world_normal") take(&in.world_normal.x, &in.world_normal.y, &in.world_normal.z);
             if (v.name == "material_uv") take(&in.material_uv.x, &in.material_uv.y);
             if (v.name == "atlas_uv") take(&in.atlas_uv.x, &in.atlas_uv.y);
-            for (const auto& [name, to] :
-                 {std::pair{"clip_position", &in.clip_position}, {"previous_clip_position", &in.previous_clip_position}})
-                if (v.name == name) take(&to->x, &to->y, &to->z, &to->w);
+            for (const auto& [name, to] : {std::pair{"world_tangent", &in.world_tangent},
+                                           {"clip_position", &in.clip_position},
+                                           {"previous_clip_position", &in.previous_clip_position}})
+                if (v.name == std::string(name)) take(&to->x, &to->y, &to->z, &to->w);
         }
     }
     return out;
 }
 
-std::map<std::string, Expect> expectations(const Values& values, const Scene& from) {
-    const SurfaceAxes axes = axes_of(values);
-    const std::string pass = value_of(values, "pass", "forward");
+std::map<std::string, Expect> expectations(const Values& values, const Scene& from, bool additive) {
+    SurfaceAxes axes = axes_of(values);
+    axes.additive = additive;
+    const auto wanted = values.find("pass");
+    const std::string pass = wanted == values.end() ? "forward" : wanted->second;
     std::map<std::string, Expect> out;
     out["depth"] = [](const Points::Point& p) { return std::vector{p.depth}; };
     if (pass == "forward")

@@ -17,11 +17,21 @@ struct Variant {
     std::vector<StageCode> stages;
 };
 
-// Every distinct pipeline of a manifest below manifests/, with one of its variants each.
+// Every distinct pipeline of a manifest below manifests/, with one of its variants each, as its table has it.
 std::vector<Variant> pipelines_of(const std::string& manifest);
 
-// One variant of surface straight from GLSL; edits: text that must be there, and what replaces it.
-Variant surface_variant(const Values& values, const std::vector<std::pair<std::string, std::string>>& edits = {});
+// What is replaced in the text of a fragment stage, everywhere; it must be there.
+using Edits = std::vector<std::pair<std::string, std::string>>;
+
+// One variant of a shader straight from GLSL; axes that are left out have their first value.
+Variant variant_of(const std::string& manifest, const std::string& shader, const Values& values, const Edits& edits = {});
+inline Variant surface_variant(const Values& values, const Edits& edits = {}) {
+    return variant_of("surface.yaml", "surface", values, edits);
+}
+
+// Legal variants of a shader among which every pair of values that some legal variant has is there once; each picked at
+// random from all legal ones with a pair that the others lack, by `seed`.
+std::vector<Values> pairwise(const std::string& manifest, const std::string& shader, uint64_t seed);
 
 reference::SurfaceAxes axes_of(const Values& values);
 
@@ -34,7 +44,7 @@ std::vector<RunOutput> draw(const std::vector<StageCode>& stages, const std::vec
 // the last place, as another pipeline may round an interpolation otherwise; where the reference knows it closer, within that.
 Points drawn_points(const StageCode& vertex, const NamedInputs& inputs, const Points& reference);
 
-// What the variant's outputs are to hold, by the name of the output.
-std::map<std::string, Expect> expectations(const Values& values, const Scene& scene);
+// What the variant's outputs are to hold, by the name of the output. additive: the light alone.
+std::map<std::string, Expect> expectations(const Values& values, const Scene& scene, bool additive = false);
 
 }  // namespace kiln::test

@@ -219,9 +219,18 @@ inline Bounded asin(const Bounded& x) {
     return std::fabs(x.value) <= 1 ? Bounded(std::asin(x.value), formed.error) : Bounded(0, bounds::infinity);
 }
 
+// Both forms read a, b and t twice: an error of theirs moves both readings at once. So forms are rounded from exact operands,
+// and the operands' errors are passed on by the slopes 1 - t, t and b - a.
 inline Bounded mix(const Bounded& a, const Bounded& b, const Bounded& t) {
-    const Bounded weighted = a * (Bounded(1.0) - t) + b * t, stepped = a + t * (b - a);
-    return {weighted.value, std::max(weighted.error, stepped.error)};
+    const Bounded from(a.value, 0), to(b.value, 0), at(t.value, 0);
+    const Bounded weighted = from * (Bounded(1.0) - at) + to * at, stepped = from + at * (to - from);
+    const double high = std::fabs(t.value) + t.error, low = std::fabs(1 - t.value) + t.error;
+    const double moved = low * a.error + high * b.error + std::fabs(b.value - a.value) * t.error;
+    // What the errors add to the operands is rounded as well.
+    const double more = (std::fabs(a.value) + a.error) * low + (std::fabs(b.value) + b.error) * high -
+                        std::fabs(a.value * (1 - t.value)) - std::fabs(b.value * t.value);
+    const double error = std::max(weighted.error, stepped.error) + moved + 4 * bounds::ulp * more;
+    return {weighted.value, std::isnan(error) ? bounds::infinity : error};
 }
 
 namespace bounds {

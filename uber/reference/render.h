@@ -17,6 +17,36 @@ inline Mat4<double> operator*(const Mat4<double>& a, const Mat4<double>& b) {
     return {{a * b.columns[0], a * b.columns[1], a * b.columns[2], a * b.columns[3]}};
 }
 
+// By cofactors.
+inline Mat4<double> inverse(const Mat4<double>& m) {
+    const auto at = [&](int r, int c) {
+        const Vec4<double>& v = m.columns[c];
+        return r == 0 ? v.x : r == 1 ? v.y : r == 2 ? v.z : v.w;
+    };
+    double cofactor[4][4];
+    for (int r = 0; r < 4; ++r)
+        for (int c = 0; c < 4; ++c) {
+            const int a[3] = {r == 0 ? 1 : 0, r <= 1 ? 2 : 1, r <= 2 ? 3 : 2},
+                      b[3] = {c == 0 ? 1 : 0, c <= 1 ? 2 : 1, c <= 2 ? 3 : 2};
+            const auto row = [&](int i) { return Vec3<double>{at(a[i], b[0]), at(a[i], b[1]), at(a[i], b[2])}; };
+            cofactor[r][c] = dot(row(0), cross(row(1), row(2))) * ((r + c) % 2 == 0 ? 1 : -1);
+        }
+    double det = 0;
+    for (int c = 0; c < 4; ++c) det += at(0, c) * cofactor[0][c];
+    Mat4<double> out;
+    for (int c = 0; c < 4; ++c)
+        out.columns[c] = Vec4<double>{cofactor[c][0], cofactor[c][1], cofactor[c][2], cofactor[c][3]} / det;
+    return out;
+}
+
+inline Mat4<double> transpose(const Mat4<double>& m) {
+    const auto& c = m.columns;
+    return {{{c[0].x, c[1].x, c[2].x, c[3].x},
+             {c[0].y, c[1].y, c[2].y, c[3].y},
+             {c[0].z, c[1].z, c[2].z, c[3].z},
+             {c[0].w, c[1].w, c[2].w, c[3].w}}};
+}
+
 // World to view: the eye looks along -z.
 inline Mat4<double> look_at(const Vec3<double>& eye, const Vec3<double>& target, const Vec3<double>& up) {
     const Vec3<double> back = normalize(eye - target), right = normalize(cross(up, back)), top = cross(back, right);
@@ -62,6 +92,7 @@ struct Fragment {
     int triangle = -1;  // -1: nothing here
     bool front = false;
     double depth = 1;
+    double margin = 1;  // how near a triangle was to being cut away here, or to not being
     // Weights of the corners at the pixel's centre, and a step to the right and down of it.
     std::array<double, 3> weight{}, right{}, down{};
 };
@@ -69,7 +100,9 @@ struct Fragment {
 // A device may move each vertex to a grid of 2^-8 of a pixel (subPixelPrecisionBits), and with them whatever is between.
 inline constexpr double pixel_step = 1.0 / 256;
 
-inline std::vector<Fragment> rasterise(const std::vector<RasterTriangle>& triangles, int width, int height) {
+// opacity: callable (triangle, weights) -> how far above the least opacity that is drawn; below 0 there is a hole.
+template <class Opacity>
+std::vector<Fragment> rasterise(const std::vector<RasterTriangle>& triangles, int width, int height, const Opacity& opacity) {
     std::vector<Fragment> out(static_cast<size_t>(width) * static_cast<size_t>(height));
     for (size_t index = 0; index < triangles.size(); ++index) {
         const Vec4<double>* p = triangles[index].clip;
@@ -104,7 +137,10 @@ inline std::vector<Fragment> rasterise(const std::vector<RasterTriangle>& triang
                 if (e[0] < 0 || e[1] < 0 || e[2] < 0) continue;
                 const double depth = e[0] * p[0].z + e[1] * p[1].z + e[2] * p[2].z;
                 Fragment& f = out[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
-                if (depth < 0 || depth > 1 || (f.triangle >= 0 && depth >= f.depth)) continue;
+                if (depth < 0 || depth > 1) continue;
+                const double opaque = opacity(index, weights(e));
+                f.margin = std::min(f.margin, std::fabs(opaque));
+                if (opaque < 0 || (f.triangle >= 0 && depth >= f.depth)) continue;
                 f.triangle = static_cast<int>(index);
                 f.depth = depth;
                 // Counter-clockwise is front; with y down its determinant is negative.
@@ -115,6 +151,10 @@ inline std::vector<Fragment> rasterise(const std::vector<RasterTriangle>& triang
             }
     }
     return out;
+}
+
+inline std::vector<Fragment> rasterise(const std::vector<RasterTriangle>& triangles, int width, int height) {
+    return rasterise(triangles, width, height, [](size_t, const std::array<double, 3>&) { return 1.0; });
 }
 
 // What a device may make of one varying there: its vertices moved and wrong by their own errors, eight roundings between.

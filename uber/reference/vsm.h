@@ -25,9 +25,9 @@ T moments_variance(const Vec2<T>& moments, const T& least) {
 
 template <class T>
 T chebyshev_upper_bound(const Vec2<T>& moments, const T& t, const T& least) {
-    if (!(t > moments.x)) return T(1);
-    const T variance = moments_variance(moments, least);
-    return variance / (variance + (t - moments.x) * (t - moments.x));
+    // Continuous where t passes the mean: no decision. Divided by the variance, which has most of the error, once.
+    const T beyond = max(t - moments.x, T(0));
+    return T(1) / (T(1) + beyond * beyond / moments_variance(moments, least));
 }
 
 template <class T>

@@ -62,7 +62,10 @@ TEST(DepthMap, ComparesFourTexelsAndClampsToTheEdge) {
     EXPECT_EQ(map(Vec2<double>{1.0, 0.25}, 0.5), 1.0);
     EXPECT_EQ(map(Vec2<double>{-3.0, 4.0}, 0.5), 1.0);
     const Bounded between = map(Vec2<Bounded>{Bounded(0.5), Bounded(0.25)}, Bounded(0.5));
-    EXPECT_NEAR(between.error, 2 * texel_step, 1e-4) << "filter weights come in steps, along both axes";
+    EXPECT_NEAR(between.error, texel_step, 1e-4) << "filter weights come in steps; along the other axis both ways are half lit";
+    const DepthMap corner(2, 2, {0.25f, 0.75f, 0.75f, 0.75f});
+    const Bounded both = corner(Vec2<Bounded>{Bounded(0.375), Bounded(0.375)}, Bounded(0.5));
+    EXPECT_NEAR(both.error, 2 * 0.75 * texel_step, 1e-4) << "steps along both axes";
 }
 
 }  // namespace
