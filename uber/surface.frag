@@ -125,7 +125,8 @@ void main() {
 #if LIGHT_TYPE != LIGHT_NONE
     const vec3 l = direction_to_light(world_position);
     MEDIUM const vec3 reflected = reflected_light(n, v, l, s);
-    radiance += reflected * light_irradiance(world_position, l) * light_visibility(world_position, n, l);
+    radiance += reflected * light_irradiance(world_position, l) *
+                light_visibility(world_position, geometric_normal(), l);
 #endif
 
     color = vec4(radiance, 1.0);

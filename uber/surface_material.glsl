@@ -73,15 +73,25 @@ Shading sample_material() {
     return s;
 }
 
+// Towards the side that is seen, where both sides are drawn.
+vec3 faced(vec3 n) {
+#if TWO_SIDED
+    return gl_FrontFacing ? n : -n;
+#else
+    return n;
+#endif
+}
+
+// Of the surface as it stands in shadow maps: a normal map moves no depth.
+vec3 geometric_normal() {
+    return faced(safe_normalize(world_normal, vec3(0.0, 0.0, 1.0)));
+}
+
 vec3 shading_normal() {
     vec3 n = safe_normalize(world_normal, vec3(0.0, 0.0, 1.0));
 #if NORMAL_MAP
     const mat3 frame = tangent_frame(n, world_tangent.xyz, world_tangent.w);
     n = apply_normal(frame, decode_normal_unorm8(texture(normal_map, material_uv).xyz));
 #endif
-#if TWO_SIDED
-    return gl_FrontFacing ? n : -n;
-#else
-    return n;
-#endif
+    return faced(n);
 }

@@ -154,6 +154,11 @@ TEST(Images, WrongShadersAreCaught) {
         {"a normal that does not turn", "return gl_FrontFacing ? n : -n;", "return n;", pbr},
         {"a flipped shadow map", "ndc.xy * 0.5 + 0.5", "ndc.xy * vec2(0.5, -0.5) + 0.5", with(sun, "shadow", "hard")},
         {"ratios over 127", "texel * 2.0 - 1.0", "texel * (255.0 / 127.0) - 1.0", with(pbr, "lightmap", "sh_hq")},
+        {"a receiver's plane by the normal map", "light_visibility(world_position, geometric_normal(), l)",
+         "light_visibility(world_position, n, l)", with(with(sun, "shadow", "pcf5"), "normal_map", "true")},
+        {"the blocker's share of a filter's taps", "/ float(n * n)", "/ float(n * n + 1)", with(sun, "shadow", "pcf3")},
+        {"a mirror the wrong way round", "2.0 * dot(n, v) * n - v", "v - 2.0 * dot(n, v) * n", with(pbr, "ibl", "split_sum")},
+        {"probes without the weights' second half", "weights.high[i - 4]", "weights.low[i - 4]", with(pbr, "probes", "sh_l2")},
         {"first band with half its weight", "0.5 * (ratio_y", "0.25 * (ratio_y", with(pbr, "lightmap", "sh_lq")},
     };
     for (const Wrong& w : all) {
@@ -161,8 +166,8 @@ TEST(Images, WrongShadersAreCaught) {
         const Points reference = visible_points(s);
         const Expect expect = expectations(w.values, s).at("output 0");
         for (const bool wrong : {false, true}) {
-            const Variant v = surface_variant(w.values, wrong ? Edits{{w.from, w.to}} : Edits());
-            const RunOutput run = draw(v.stages, {inputs_of(s)}).front();
+            const Variant v = variant_of("renderer.yaml", "surface", w.values, wrong ? Edits{{w.from, w.to}} : Edits());
+            const RunOutput run = draw(v.stages, {inputs_of(s, axes_of(w.values))}).front();
             const ReadBack* got = output(run, "output 0");
             ASSERT_NE(got, nullptr);
             const Judged j = judge(drawn_points(v.stages.front(), inputs_of(s), reference), expect, *got);

@@ -56,7 +56,7 @@ Vec3<T> surface_radiance(const SurfaceAxes& axes, const SurfaceBlocks& b, const 
     const Vec3<T> l = direction_to_light(axes, b, in.world_position);
     const Vec3<T> reflected = relaxed(axes, reflected_light(axes, b, n, v, l, s));
     const Vec3<T> arriving = light_irradiance(axes, b, in.world_position, l);
-    const T visible = light_visibility(axes, b, maps, in.world_position, n, l);
+    const T visible = light_visibility(axes, b, maps, in.world_position, geometric_normal(axes, in, front), l);
     return relaxed(axes, radiance + relaxed(axes, relaxed(axes, reflected * arriving) * visible));
 }
 

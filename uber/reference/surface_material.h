@@ -50,13 +50,20 @@ SurfaceShading<T> surface_material(const SurfaceAxes& axes, const SurfaceBlocks&
     return s;
 }
 
+// Without the normal map.
+template <class T>
+Vec3<T> geometric_normal(const SurfaceAxes& axes, const SurfaceVaryings<T>& in, bool front) {
+    const Vec3<T> n = safe_normalize(in.world_normal, Vec3<T>{T(0), T(0), T(1)});
+    return axes.two_sided && !front ? -n : n;
+}
+
 template <class T, class Maps>
 Vec3<T> surface_normal(const SurfaceAxes& axes, const Maps& maps, const SurfaceVaryings<T>& in, bool front) {
-    Vec3<T> n = safe_normalize(in.world_normal, Vec3<T>{T(0), T(0), T(1)});
-    if (axes.normal_map)
-        n = apply_normal(tangent_frame(n, in.world_tangent.xyz(), in.world_tangent.w),
-                         decode_normal_unorm8(maps.normal_map.rgb(in.material_uv)));
-    return axes.two_sided && !front ? -n : n;
+    if (!axes.normal_map) return geometric_normal(axes, in, front);
+    const Vec3<T> n = safe_normalize(in.world_normal, Vec3<T>{T(0), T(0), T(1)});
+    const Vec3<T> mapped = apply_normal(tangent_frame(n, in.world_tangent.xyz(), in.world_tangent.w),
+                                        decode_normal_unorm8(maps.normal_map.rgb(in.material_uv)));
+    return axes.two_sided && !front ? -mapped : mapped;
 }
 
 }  // namespace kiln::reference
