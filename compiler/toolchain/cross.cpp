@@ -1,24 +1,25 @@
-// The only file that includes SPIRV-Cross, by its C interface, which turns the library's exceptions into results. A module
-// is parsed once; every target gets a copy of that tree but the last, which gets the tree itself. What is to be said to the
-// library is worked out beforehand in edits.cpp.
+// The only file that includes SPIRV-Cross, whose exceptions become refusals here. What is to be said to the library is worked
+// out beforehand in edits.cpp, and which of its expressions to name in read_often.cpp.
 
 #include "compiler/toolchain/cross.h"
 
-#include <spirv_cross/spirv_cross_c.h>
+#include <spirv_cross/spirv_cross_c.h>  // for its version
 
-#include <memory>
+#include <exception>
+#include <spirv_cross/spirv_hlsl.hpp>
+#include <spirv_cross/spirv_msl.hpp>
+#include <spirv_cross/spirv_parser.hpp>
+#include <utility>
 
 #include "compiler/reflect/spirv_enums.h"
 #include "compiler/toolchain/edits.h"
 #include "compiler/toolchain/limits.h"
+#include "compiler/toolchain/read_often.h"
 
 namespace kiln {
 namespace {
 
-struct ContextEnd {
-    void operator()(spvc_context_s* c) const { spvc_context_destroy(c); }
-};
-using Context = std::unique_ptr<spvc_context_s, ContextEnd>;
+namespace sc = spirv_cross;
 
 // The library's words without its ids, which differ from variant to variant, and without advice that nobody here can take.
 std::string clean(std::string why) {
@@ -39,179 +40,168 @@ Translated refused(const std::string& reason) {
     return {{}, std::move(why)};
 }
 
-// One target of one module. Every step returns false after the library reported an error.
+// The library writes an expression where it is read, and begins anew with a temporary for each that it met twice. Told of them
+// beforehand it seldom has to: half of its work.
+template <class Compiler>
+class Told : public Compiler {
+public:
+    using Compiler::Compiler;
+    void name_these(const std::vector<uint32_t>& ids) { this->forced_temporaries.insert(ids.begin(), ids.end()); }
+};
+
+// One target of one module. Its functions throw what the library throws.
 class Translation {
 public:
-    Translation(spvc_context context, spvc_compiler compiler, Target target, const ir::View& view)
-        : context_(context), compiler_(compiler), target_(target), language_(language_of(target)), view_(view) {}
+    Translation(Target target, const ir::View& view, const Edits& edits, const ReadOften& often)
+        : target_(target), language_(language_of(target)), view_(view), edits_(edits), often_(often) {}
 
-    Translated run(const Edits& edits, bool corrects_depth, bool flat_blocks) {
-        if (!set_options(corrects_depth, flat_blocks) || !combine(edits)) return last_error();
-        for (const char* extension : edits.extensions)
-            if (!ok(spvc_compiler_require_extension(compiler_, extension))) return last_error();
-        apply(edits);
-        if (!bind(edits)) return last_error();
-        const char* text = nullptr;
-        if (!ok(spvc_compiler_compile(compiler_, &text))) return last_error();
-        return {text, {}};
+    template <class Tree>  // sc::ParsedIR, to be copied or taken
+    std::string run(Tree&& tree, bool corrects_depth, bool flat_blocks) {
+        const auto ready = [&](auto& compiler) {
+            compiler.name_these(often_.ids);
+            if (language_ == Language::hlsl) compiler.name_these(often_.by_component);
+            set_common_options(compiler, corrects_depth, flat_blocks);
+            if (is_gl() && edits_.separate) combine(compiler);
+            for (const char* extension : edits_.extensions) compiler.require_extension(extension);
+            apply(compiler);
+        };
+        if (language_ == Language::hlsl) {
+            Told<sc::CompilerHLSL> compiler(std::forward<Tree>(tree));
+            sc::CompilerHLSL::Options options = compiler.get_hlsl_options();
+            options.shader_model = version_of(target_);
+            options.point_size_compat = true;
+            compiler.set_hlsl_options(options);
+            ready(compiler);
+            for (const Slot& s : edits_.slots) bind(compiler, s);
+            return compiler.compile();
+        }
+        if (language_ == Language::msl) {
+            Told<sc::CompilerMSL> compiler(std::forward<Tree>(tree));
+            sc::CompilerMSL::Options options = compiler.get_msl_options();
+            options.msl_version = version_of(target_);
+            options.platform = sc::CompilerMSL::Options::macOS;
+            options.texture_buffer_native = true;
+            compiler.set_msl_options(options);
+            ready(compiler);
+            for (const Slot& s : edits_.slots) bind(compiler, s);
+            return compiler.compile();
+        }
+        Told<sc::CompilerGLSL> compiler(std::forward<Tree>(tree));
+        ready(compiler);
+        return compiler.compile();
     }
 
 private:
-    static bool ok(spvc_result r) { return r == SPVC_SUCCESS; }
-    Translated last_error() const { return refused(spvc_context_get_last_error_string(context_)); }
     bool is_gl() const { return language_ == Language::glsl || language_ == Language::essl; }
 
-    bool set_options(bool corrects_depth, bool flat_blocks) {
-        spvc_compiler_options o = nullptr;
-        if (!ok(spvc_compiler_create_compiler_options(compiler_, &o))) return false;
-        bool good = true;
-        const auto flag = [&](spvc_compiler_option option, bool value) {
-            good &= ok(spvc_compiler_options_set_bool(o, option, value ? SPVC_TRUE : SPVC_FALSE));
-        };
-        const auto number = [&](spvc_compiler_option option, unsigned value) {
-            good &= ok(spvc_compiler_options_set_uint(o, option, value));
-        };
-        const unsigned version = version_of(target_);
-        if (is_gl()) {
-            const bool es = language_ == Language::essl;
-            number(SPVC_COMPILER_OPTION_GLSL_VERSION, version);
-            flag(SPVC_COMPILER_OPTION_GLSL_ES, es);
-            flag(SPVC_COMPILER_OPTION_GLSL_EMIT_PUSH_CONSTANT_AS_UNIFORM_BUFFER, true);
-            flag(SPVC_COMPILER_OPTION_GLSL_ENABLE_420PACK_EXTENSION, false);
-            flag(SPVC_COMPILER_OPTION_FIXUP_DEPTH_CONVENTION, corrects_depth);
-            // Draw calls with a base instance came with GL 4.2; before, the term would be a uniform that nobody sets.
-            flag(SPVC_COMPILER_OPTION_GLSL_SUPPORT_NONZERO_BASE_INSTANCE, target_ == Target::glsl450);
-            flag(SPVC_COMPILER_OPTION_GLSL_FORCE_FLATTENED_IO_BLOCKS, flat_blocks);
-            // Uniforms of both stages must agree in precision, and the vertex stage's is high.
-            flag(SPVC_COMPILER_OPTION_GLSL_ES_DEFAULT_FLOAT_PRECISION_HIGHP, true);
-            flag(SPVC_COMPILER_OPTION_GLSL_ES_DEFAULT_INT_PRECISION_HIGHP, true);
-        } else if (language_ == Language::hlsl) {
-            number(SPVC_COMPILER_OPTION_HLSL_SHADER_MODEL, version);
-            flag(SPVC_COMPILER_OPTION_HLSL_POINT_SIZE_COMPAT, true);
-        } else {
-            number(SPVC_COMPILER_OPTION_MSL_VERSION, version);
-            number(SPVC_COMPILER_OPTION_MSL_PLATFORM, SPVC_MSL_PLATFORM_MACOS);
-            flag(SPVC_COMPILER_OPTION_MSL_TEXTURE_BUFFER_NATIVE, true);
-        }
-        return good && ok(spvc_compiler_install_compiler_options(compiler_, o));
+    void set_common_options(sc::CompilerGLSL& compiler, bool corrects_depth, bool flat_blocks) const {
+        if (!is_gl()) return;
+        sc::CompilerGLSL::Options options = compiler.get_common_options();
+        options.version = version_of(target_);
+        options.es = language_ == Language::essl;
+        options.emit_push_constant_as_uniform_buffer = true;
+        options.enable_420pack_extension = false;
+        options.vertex.fixup_clipspace = corrects_depth;
+        // Draw calls with a base instance came with GL 4.2; before, the term would be a uniform that nobody sets.
+        options.vertex.support_nonzero_base_instance = target_ == Target::glsl450;
+        options.force_flattened_io_blocks = flat_blocks;
+        // Uniforms of both stages must agree in precision, and the vertex stage's is high.
+        options.fragment.default_float_precision = sc::CompilerGLSL::Options::Highp;
+        options.fragment.default_int_precision = sc::CompilerGLSL::Options::Highp;
+        compiler.set_common_options(options);
     }
 
     // GL has no separate samplers: every pair that is used together becomes one, named and numbered by its two slots.
-    bool combine(const Edits& edits) {
-        if (!is_gl() || !edits.separate) return true;
-        spvc_variable_id dummy = 0;
-        if (!ok(spvc_compiler_build_dummy_sampler_for_combined_images(compiler_, &dummy))) return false;
-        if (!ok(spvc_compiler_build_combined_image_samplers(compiler_))) return false;
-        const spvc_combined_image_sampler* pairs = nullptr;
-        size_t count = 0;
-        if (!ok(spvc_compiler_get_combined_image_samplers(compiler_, &pairs, &count))) return false;
-        for (size_t i = 0; i < count; ++i) {
-            const Slot* image = edits.slot_of(pairs[i].image_id);
-            const Slot* sampler = pairs[i].sampler_id == dummy ? image : edits.slot_of(pairs[i].sampler_id);
+    void combine(sc::CompilerGLSL& compiler) const {
+        const uint32_t dummy = compiler.build_dummy_sampler_for_combined_images();
+        compiler.build_combined_image_samplers();
+        for (const sc::CombinedImageSampler& pair : compiler.get_combined_image_samplers()) {
+            const Slot* image = edits_.slot_of(pair.image_id);
+            const Slot* sampler = pair.sampler_id == dummy ? image : edits_.slot_of(pair.sampler_id);
             if (!image || !sampler) continue;
-            const std::string name = image->name + "_" + (sampler == image ? std::string("fetch") : sampler->name);
-            spvc_compiler_set_name(compiler_, pairs[i].combined_id, name.c_str());
-            spvc_compiler_set_decoration(compiler_, pairs[i].combined_id, SpvDecorationBinding,
-                                         image->texture + sampler->unit_offset);
+            compiler.set_name(pair.combined_id, image->name + "_" + (sampler == image ? std::string("fetch") : sampler->name));
+            compiler.set_decoration(pair.combined_id, spv::DecorationBinding, image->texture + sampler->unit_offset);
         }
-        return true;
     }
 
-    void apply(const Edits& edits) {
-        for (const auto& [id, name] : edits.names) spvc_compiler_set_name(compiler_, id, name.c_str());
-        for (const Edits::MemberName& m : edits.member_names)
-            spvc_compiler_set_member_name(compiler_, m.type, m.member, m.name.c_str());
+    void apply(sc::CompilerGLSL& compiler) const {
+        for (const auto& [id, name] : edits_.names) compiler.set_name(id, name);
+        for (const Edits::MemberName& m : edits_.member_names) compiler.set_member_name(m.type, m.member, m.name);
         if (!is_gl()) return;
         // Promises about the direction in which depth moves; GLSL before 4.20 and ESSL have no words for them, and need none.
         if (target_ != Target::glsl450)
-            for (const auto mode : {SpvExecutionModeDepthGreater, SpvExecutionModeDepthLess, SpvExecutionModeDepthUnchanged})
-                spvc_compiler_unset_execution_mode(compiler_, mode);
+            for (const auto mode :
+                 {spv::ExecutionModeDepthGreater, spv::ExecutionModeDepthLess, spv::ExecutionModeDepthUnchanged})
+                compiler.unset_execution_mode(mode);
         // ESSL has one blend source and so no word for the first; modules with a second are refused.
         if (language_ == Language::essl)
             for (const ir::Variable& v : view_.variables)
-                if (v.storage == ir::sc_output) spvc_compiler_unset_decoration(compiler_, v.id, SpvDecorationIndex);
-        for (const Edits::Interpolate& i : edits.interpolate) interpolate(i);
-        for (const auto decoration : {SpvDecorationLocation, SpvDecorationComponent}) {
-            if (edits.unplaced.empty()) break;
-            for (const uint32_t id : edits.unplaced) spvc_compiler_unset_decoration(compiler_, id, decoration);
-            for (const Edits::MemberName& m : edits.member_names)
-                spvc_compiler_unset_member_decoration(compiler_, m.type, m.member, decoration);
+                if (v.storage == ir::sc_output) compiler.unset_decoration(v.id, spv::DecorationIndex);
+        for (const Edits::Interpolate& i : edits_.interpolate) interpolate(compiler, i);
+        for (const auto decoration : {spv::DecorationLocation, spv::DecorationComponent}) {
+            if (edits_.unplaced.empty()) break;
+            for (const uint32_t id : edits_.unplaced) compiler.unset_decoration(id, decoration);
+            for (const Edits::MemberName& m : edits_.member_names) compiler.unset_member_decoration(m.type, m.member, decoration);
         }
-        for (const auto& [id, number] : edits.bindings) {
-            spvc_compiler_unset_decoration(compiler_, id, SpvDecorationDescriptorSet);
-            spvc_compiler_set_decoration(compiler_, id, SpvDecorationBinding, number);
+        for (const auto& [id, number] : edits_.bindings) {
+            compiler.unset_decoration(id, spv::DecorationDescriptorSet);
+            compiler.set_decoration(id, spv::DecorationBinding, number);
         }
     }
 
-    void interpolate(const Edits::Interpolate& i) {
-        const std::pair<SpvDecoration, bool> all[] = {
-            {SpvDecorationFlat, i.how.flat},
-            {SpvDecorationNoPerspective, i.how.no_perspective && language_ == Language::glsl},
-            {SpvDecorationCentroid, i.how.centroid},
-            {SpvDecorationSample, i.how.sample && target_ == Target::glsl450}};
+    void interpolate(sc::CompilerGLSL& compiler, const Edits::Interpolate& i) const {
+        const std::pair<spv::Decoration, bool> all[] = {
+            {spv::DecorationFlat, i.how.flat},
+            {spv::DecorationNoPerspective, i.how.no_perspective && language_ == Language::glsl},
+            {spv::DecorationCentroid, i.how.centroid},
+            {spv::DecorationSample, i.how.sample && target_ == Target::glsl450}};
         for (const auto& [decoration, wanted] : all) {
-            if (i.is_member && wanted) spvc_compiler_set_member_decoration(compiler_, i.id, i.member, decoration, 1);
-            if (i.is_member && !wanted) spvc_compiler_unset_member_decoration(compiler_, i.id, i.member, decoration);
-            if (!i.is_member && wanted) spvc_compiler_set_decoration(compiler_, i.id, decoration, 1);
-            if (!i.is_member && !wanted) spvc_compiler_unset_decoration(compiler_, i.id, decoration);
+            if (i.is_member && wanted) compiler.set_member_decoration(i.id, i.member, decoration, 1);
+            if (i.is_member && !wanted) compiler.unset_member_decoration(i.id, i.member, decoration);
+            if (!i.is_member && wanted) compiler.set_decoration(i.id, decoration, 1);
+            if (!i.is_member && !wanted) compiler.unset_decoration(i.id, decoration);
         }
     }
 
-    bool bind(const Edits& edits) {
-        bool good = true;
-        const auto model = static_cast<SpvExecutionModel>(view_.model);
-        for (const Slot& s : edits.slots) {
-            const bool push = s.kind == ResourceKind::push_constants;
-            if (language_ == Language::hlsl) {
-                spvc_hlsl_resource_binding b;
-                spvc_hlsl_resource_binding_init(&b);
-                b.stage = model;
-                b.desc_set = push ? SPVC_HLSL_PUSH_CONSTANT_DESC_SET : s.set;
-                b.binding = push ? SPVC_HLSL_PUSH_CONSTANT_BINDING : s.binding;
-                b.cbv = {0, s.buffer};
-                b.srv = {0, s.texture};
-                b.sampler = {0, s.sampler};
-                b.uav = {0, s.uav};
-                good &= ok(spvc_compiler_hlsl_add_resource_binding(compiler_, &b));
-            } else if (language_ == Language::msl) {
-                spvc_msl_resource_binding b;
-                spvc_msl_resource_binding_init(&b);
-                b.stage = model;
-                b.desc_set = push ? SPVC_MSL_PUSH_CONSTANT_DESC_SET : s.set;
-                b.binding = push ? SPVC_MSL_PUSH_CONSTANT_BINDING : s.binding;
-                b.msl_buffer = s.metal_buffer;
-                b.msl_texture = s.metal_texture;
-                b.msl_sampler = s.sampler;
-                good &= ok(spvc_compiler_msl_add_resource_binding(compiler_, &b));
-            }
-        }
-        return good;
+    template <class Binding>
+    Binding place(const Slot& s) const {
+        const bool push = s.kind == ResourceKind::push_constants;
+        Binding b;
+        b.stage = static_cast<spv::ExecutionModel>(view_.model);
+        b.desc_set = push ? sc::ResourceBindingPushConstantDescriptorSet : s.set;
+        b.binding = push ? sc::ResourceBindingPushConstantBinding : s.binding;
+        return b;
     }
 
-    spvc_context context_;
-    spvc_compiler compiler_;
-    Target target_;
-    Language language_;
+    void bind(sc::CompilerHLSL& compiler, const Slot& s) const {
+        auto b = place<sc::HLSLResourceBinding>(s);
+        b.cbv = {0, s.buffer};
+        b.srv = {0, s.texture};
+        b.sampler = {0, s.sampler};
+        b.uav = {0, s.uav};
+        compiler.add_hlsl_resource_binding(b);
+    }
+
+    void bind(sc::CompilerMSL& compiler, const Slot& s) const {
+        auto b = place<sc::MSLResourceBinding>(s);
+        b.msl_buffer = s.metal_buffer;
+        b.msl_texture = s.metal_texture;
+        b.msl_sampler = s.sampler;
+        compiler.add_msl_resource_binding(b);
+    }
+
+    const Target target_;
+    const Language language_;
     const ir::View& view_;
+    const Edits& edits_;
+    const ReadOften& often_;
 };
-
-spvc_backend backend_of(Target target) {
-    switch (language_of(target)) {
-        case Language::hlsl:
-            return SPVC_BACKEND_HLSL;
-        case Language::msl:
-            return SPVC_BACKEND_MSL;
-        default:
-            return SPVC_BACKEND_GLSL;
-    }
-}
 
 }  // namespace
 
 std::string cross_version() {
-    unsigned major = 0, minor = 0, patch = 0;
-    spvc_get_version(&major, &minor, &patch);
-    return "SPIRV-Cross C API " + std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
+    return "SPIRV-Cross C API " + std::to_string(SPVC_C_API_VERSION_MAJOR) + "." + std::to_string(SPVC_C_API_VERSION_MINOR) +
+           "." + std::to_string(SPVC_C_API_VERSION_PATCH);
 }
 
 std::vector<Translated> cross_translate(WordView words, const std::vector<Target>& targets, const SlotLayout& slots) {
@@ -245,20 +235,25 @@ std::vector<Translated> cross_translate(WordView words, const std::vector<Target
     }
     if (todo.empty()) return out;
 
-    spvc_context raw = nullptr;
-    if (spvc_context_create(&raw) != SPVC_SUCCESS) return refuse_all("SPIRV-Cross: out of memory");
-    const Context context(raw);
+    sc::ParsedIR tree;
+    try {
+        sc::Parser parser(words.data(), words.size());
+        parser.parse();
+        tree = std::move(parser.get_parsed_ir());
+    } catch (const std::exception& problem) {
+        for (const size_t i : todo) out[i] = refused(problem.what());
+        return out;
+    }
+    const ReadOften often = find_read_often(words);
+    const bool corrects_depth = slots.rasterised == reflected->reflection.stage;
     for (const size_t i : todo) {
-        spvc_parsed_ir tree = nullptr;
-        spvc_compiler compiler = nullptr;
-        if (spvc_context_parse_spirv(raw, words.data(), words.size(), &tree) != SPVC_SUCCESS ||
-            spvc_context_create_compiler(raw, backend_of(targets[i]), tree, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &compiler) !=
-                SPVC_SUCCESS)
-            out[i] = refused(spvc_context_get_last_error_string(raw));
-        else
-            out[i] = Translation(raw, compiler, targets[i], *view)
-                         .run(edits[i], slots.rasterised == reflected->reflection.stage, slots.flat_blocks);
-        spvc_context_release_allocations(raw);
+        try {
+            Translation translation(targets[i], *view, edits[i], often);
+            out[i].text = i == todo.back() ? translation.run(std::move(tree), corrects_depth, slots.flat_blocks)
+                                           : translation.run(tree, corrects_depth, slots.flat_blocks);
+        } catch (const std::exception& problem) {
+            out[i] = refused(problem.what());
+        }
     }
     return out;
 }

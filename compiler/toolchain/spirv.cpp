@@ -13,6 +13,7 @@
 #include <spirv-tools/optimizer.hpp>
 
 #include "compiler/toolchain/spirv_names.h"
+#include "compiler/toolchain/spirv_operands.h"
 #include "compiler/toolchain/spirv_reach.h"
 
 namespace kiln {
@@ -117,12 +118,7 @@ spv_result_t note_instruction(void* user, const spv_parsed_instruction_t* in) {
 }
 
 bool parse(WordView words, const Options& options, ParsedModule& out) {
-    out.instructions.clear();
-    out.id_words.clear();
-    const spvtools::Context context(environment_of(options));
-    Parsing parsing{words.data(), &out};
-    return spvBinaryParse(context.CContext(), &parsing, words.data(), words.size(), nullptr, note_instruction, nullptr) ==
-           SPV_SUCCESS;
+    return read_operands(words, out) || spirv_parse(words, options, out);
 }
 
 std::vector<ToolMessage> validate(WordView words, const Options& options, bool friendly_names) {
@@ -149,6 +145,15 @@ std::vector<ToolMessage> validate(WordView words, const Options& options, bool f
 }  // namespace
 
 std::string spirv_version() { return spvSoftwareVersionDetailsString(); }
+
+bool spirv_parse(WordView words, const Options& options, ParsedModule& out) {
+    out.instructions.clear();
+    out.id_words.clear();
+    const spvtools::Context context(environment_of(options));
+    Parsing parsing{words.data(), &out};
+    return spvBinaryParse(context.CContext(), &parsing, words.data(), words.size(), nullptr, note_instruction, nullptr) ==
+           SPV_SUCCESS;
+}
 
 Result<Words> spirv_prune(WordView words, const Options& options) {
     const auto passes = [](spvtools::Optimizer& o) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/toolchain/spirv_reach.h"
 #include "compiler/toolchain/toolchain.h"
 
 namespace kiln {
@@ -19,6 +20,9 @@ Result<Words> spirv_optimise(WordView words, const Options& options);
 
 // spirv-val's messages for the options' Vulkan version; empty: valid.
 std::vector<ToolMessage> spirv_validate(WordView words, const Options& options);
+
+// What SPIRV-Tools' parser says of a module; false when it is none. read_operands() is faster and knows fewer instructions.
+bool spirv_parse(WordView words, const Options& options, ParsedModule& out);
 
 // spirv-dis text, or an error when the words are no SPIR-V.
 Result<std::string> spirv_disassemble(WordView words);
