@@ -37,6 +37,17 @@ Result<std::string> find_library(const Args& args) {
     return environment_error("the GLSL library (uber/lib) is neither beside this program nor above it; name it with --library");
 }
 
+// Beside the library, as an installation or the source tree has it; empty when it could not run.
+std::string find_bc_encoder(const std::string& library) {
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    for (const char* beside : {"../../bake", "../../compiler/bake"}) {
+        const std::string folder = join_path(library, beside);
+        if (fs::is_directory(join_path(folder, "node_modules/ktx2-encoder"), ignored)) return folder;
+    }
+    return {};
+}
+
 std::string summary(const Report& report) {
     std::string out;
     for (const FamilyReport& f : report.families) {
@@ -61,10 +72,11 @@ std::string summary(const Report& report) {
     return out;
 }
 
-Result<Report> measure_all(const Args& args, DiskFiles& files, Toolchain& tools, const ReportOptions& options) {
+Result<Report> measure_all(const Args& args, DiskFiles& files, Toolchain& tools, ReportOptions options) {
     KILN_TRY(chosen_families(options));  // a misspelt family before the device is opened
     const auto folder = find_library(args);
     KILN_TRY(folder);
+    options.bc_encoder = find_bc_encoder(*folder);
     Library library(files, *folder);
     DriverChoice choice;
     choice.icd = args.value("--icd");

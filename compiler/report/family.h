@@ -103,6 +103,7 @@ Reference per_point(const Points& points, uint32_t width, uint32_t height, const
                     const std::function<Vec3d(size_t point)>& value);
 
 // Built-in families in the order of their numbers. `quick` makes smaller scenes and leaves out the dearest members.
-std::vector<Family> all_families(bool quick);
+// `bc_encoder`: as in ReportOptions.
+std::vector<Family> all_families(bool quick, const std::string& bc_encoder);
 
 }  // namespace kiln::report

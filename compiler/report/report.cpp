@@ -272,7 +272,7 @@ Timing times_of(const Timed& member, double baseline_ns, double pixels) {
 }
 
 Result<std::vector<Family>> chosen_families(const ReportOptions& options) {
-    std::vector<Family> all = all_families(options.quick);
+    std::vector<Family> all = all_families(options.quick, options.bc_encoder);
     if (options.families.empty()) return all;
     std::vector<Family> out;
     std::string known;

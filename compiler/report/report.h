@@ -48,6 +48,9 @@ struct Report {
 struct ReportOptions {
     std::vector<std::string> families;  // numbers or names; empty: all
     bool quick = false;
+    // The folder of encode_bc.mjs and its package (compiler/bake/bc_encoder.h); empty: members in BC formats are left out, and
+    // a remark says so.
+    std::string bc_encoder;
 };
 
 using Progress = std::function<void(const char* what, size_t done, size_t total)>;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "uber/reference/color.h"
+
 namespace kiln::report {
 
 namespace {
@@ -119,6 +121,10 @@ Bytes encode_texels(TexelFormat format, const std::vector<float>& c) {
         case TexelFormat::rgba8_unorm:
             for (const float v : c) put(out, unorm(v, 8), 1);
             break;
+        case TexelFormat::rgba8_srgb:
+            for (size_t i = 0; i < c.size(); ++i)
+                put(out, unorm(i % 4 == 3 ? c[i] : static_cast<float>(reference::srgb_encode(static_cast<double>(c[i]))), 8), 1);
+            break;
         case TexelFormat::rgb10a2_unorm:
             for (size_t i = 0; i < c.size(); i += 4)
                 put(out, unorm(c[i], 10) | unorm(c[i + 1], 10) << 10 | unorm(c[i + 2], 10) << 20 | unorm(c[i + 3], 2) << 30, 4);
@@ -184,6 +190,16 @@ Resource picture_map(const std::string& name, TexelFormat format, uint32_t width
         const Bytes bytes = encode_texels(format, mip);
         image.texels.insert(image.texels.end(), bytes.begin(), bytes.end());
     }
+    return image_of("uniform sampler2D " + name, std::move(image), sampler);
+}
+
+Resource block_map(const std::string& name, TexelFormat format, uint32_t width, uint32_t height, Bytes blocks,
+                   const SamplerState& sampler) {
+    ImageData image;
+    image.format = format;
+    image.width = width;
+    image.height = height;
+    image.texels = std::move(blocks);
     return image_of("uniform sampler2D " + name, std::move(image), sampler);
 }
 

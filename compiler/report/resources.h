@@ -15,8 +15,8 @@ Resource storage_buffer(const std::string& declaration, const std::vector<float>
 Resource uniform_buffer(const std::string& declaration, const std::vector<float>& values);
 
 // Texels as Vulkan lays them out, or 32-bit floats a component when `format` is a float format that this can encode:
-// r16_float, rg16_float, rgba16_float, r32_float, rg32_float, rgba32_float, rgba8_unorm, rgb10a2_unorm, rg11b10_float,
-// rgb9e5_float.
+// r16_float, rg16_float, rgba16_float, r32_float, rg32_float, rgba32_float, rgba8_unorm, rgba8_srgb, rgb10a2_unorm,
+// rg11b10_float, rgb9e5_float.
 Bytes encode_texels(TexelFormat format, const std::vector<float>& components);
 uint32_t components_of(TexelFormat format);
 
@@ -24,6 +24,9 @@ uint32_t components_of(TexelFormat format);
 Resource cube_map(const std::string& name, TexelFormat format, uint32_t size, const std::vector<std::vector<float>>& mips);
 Resource picture_map(const std::string& name, TexelFormat format, uint32_t width, uint32_t height,
                      const std::vector<std::vector<float>>& mips, SamplerState sampler);
+// One mip in a BC format, already encoded.
+Resource block_map(const std::string& name, TexelFormat format, uint32_t width, uint32_t height, Bytes blocks,
+                   const SamplerState& sampler);
 Resource volume_map(const std::string& name, TexelFormat format, uint32_t size, const std::vector<std::vector<float>>& mips);
 Resource depth_map(const std::string& name, uint32_t size, const std::vector<float>& depth, bool comparing, Filter filter);
 // Layers of a comparing map, one after the other; nearest.

@@ -24,3 +24,6 @@ install(FILES ${CMAKE_BINARY_DIR}/package/kilnConfig.cmake ${CMAKE_BINARY_DIR}/p
 # Manifests name their shaders as ../uber, and schemas stand beside the manifests: both keep their places.
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/uber ${CMAKE_SOURCE_DIR}/manifests DESTINATION ${KILN_SHADERS}
   PATTERN reference EXCLUDE)
+# The BC encoder of kiln report's lightmaps; `npm install` there fetches the package that it runs.
+install(FILES ${CMAKE_SOURCE_DIR}/compiler/bake/encode_bc.mjs ${CMAKE_SOURCE_DIR}/compiler/bake/package.json
+  DESTINATION ${KILN_SHADERS}/bake)

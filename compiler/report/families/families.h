@@ -12,6 +12,7 @@ Family specialisation_family(bool quick);
 Family indirect_family(bool quick);
 Family cascade_family(bool quick);
 Family fresnel_family(bool quick);
+Family lightmap_family(bool quick, const std::string& bc_encoder);
 Family precision_family(bool quick);
 Family subsurface_family(bool quick);
 Family hair_family(bool quick);

@@ -37,7 +37,7 @@ TEST(Kernel, CountsInstructionsInsideFunctions) {
 TEST(Families, AreSoundAsData) {
     for (const bool quick : {true, false}) {
         std::set<unsigned> numbers;
-        for (const Family& f : all_families(quick)) {
+        for (const Family& f : all_families(quick, "bake")) {
             EXPECT_TRUE(numbers.insert(f.number).second) << f.name;
             EXPECT_FALSE(f.fields.empty()) << f.name;
             EXPECT_FALSE(f.expectations.empty()) << f.name;
@@ -60,11 +60,30 @@ TEST(Families, AreSoundAsData) {
     }
 }
 
+TEST(Families, LightmapsDoWithoutTheirEncoder) {
+    const auto named = [](const std::string& encoder, const std::string& member) {
+        for (const Family& f : all_families(true, encoder))
+            if (f.name == "lightmap")
+                return std::count_if(f.members.begin(), f.members.end(), [&](const Member& m) { return m.name == member; });
+        return std::ptrdiff_t{-1};
+    };
+    EXPECT_EQ(named("bake", "sh_hq"), 1);
+    EXPECT_EQ(named("", "sh_hq"), 0);
+    EXPECT_EQ(named("", "sh_ratio8"), 1);
+    for (const Family& f : all_families(true, ""))
+        if (f.name == "lightmap") {
+            ASSERT_TRUE(f.remarks);
+            const std::vector<std::string> said = f.remarks([](const std::string&, const std::string&) { return std::nullopt; });
+            ASSERT_EQ(said.size(), 1u);
+            EXPECT_NE(said[0].find("BC7"), std::string::npos);
+        }
+}
+
 TEST(Families, ScenesCompile) {
     DiskFiles files;
     Library library(files, std::string(KILN_SOURCE_DIR) + "/uber/lib");
     const std::unique_ptr<Toolchain> tools = make_toolchain();
-    for (const Family& f : all_families(true))
+    for (const Family& f : all_families(true, "bake"))
         for (const Scene& s : f.scenes)
             for (const Job job : {Job::points, Job::baseline}) {
                 const auto text = library.expanded(kernel_text(job, f.fields, s.resources, s.glsl, ""));
