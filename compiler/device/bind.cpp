@@ -61,14 +61,20 @@ VkCompareOp compare_op(Comparison compare) {
     }
 }
 
-void make_pool(Context& context, const Inputs& inputs, Bound& out, uint32_t sets) {
+// With those that no shader has.
+uint32_t descriptors_of(const Pipeline& pipeline, const Binding& b) {
+    const auto spare = pipeline.spare.find({b.set, b.binding});
+    return b.descriptors + (spare == pipeline.spare.end() ? 0 : spare->second);
+}
+
+void make_pool(Context& context, const Inputs& inputs, const Pipeline& pipeline, Bound& out) {
     std::map<VkDescriptorType, uint32_t> counts;
-    for (const Binding& b : inputs.bindings) counts[descriptor_type(b.kind)] += b.descriptors;
+    for (const Binding& b : inputs.bindings) counts[descriptor_type(b.kind)] += descriptors_of(pipeline, b);
     std::vector<VkDescriptorPoolSize> sizes;
     for (const auto& [type, n] : counts) sizes.push_back({type, n});
     VkDescriptorPoolCreateInfo create{};
     create.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-    create.maxSets = sets;
+    create.maxSets = static_cast<uint32_t>(pipeline.sets.size());
     create.poolSizeCount = static_cast<uint32_t>(sizes.size());
     create.pPoolSizes = sizes.data();
     context.ok(vkCreateDescriptorPool(context.device, &create, nullptr, &out.pool), "vkCreateDescriptorPool");
@@ -101,7 +107,7 @@ void bind_inputs(Context& context, Arena& arena, Images& images, Samplers& sampl
                  const PipelineRequest& request, const Pipeline& pipeline, const Inputs& inputs, Bound& out) {
     const uint32_t count = static_cast<uint32_t>(pipeline.sets.size());
     if (count == 0) return;
-    make_pool(context, inputs, out, count);
+    make_pool(context, inputs, pipeline, out);
     if (context.failed()) return;
     VkDescriptorSetAllocateInfo allocate{};
     allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
@@ -117,12 +123,13 @@ void bind_inputs(Context& context, Arena& arena, Images& images, Samplers& sampl
     std::map<uint32_t, VkImageView> input_views;
     uint32_t ordinal = 0;
     for (const Binding& b : inputs.bindings)
-        for (uint32_t i = 0; i < b.descriptors; ++i) {
+        for (uint32_t place = 0; place < descriptors_of(pipeline, b); ++place) {
+            const uint32_t i = std::min(place, b.descriptors - 1);
             VkWriteDescriptorSet w{};
             w.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
             w.dstSet = out.sets[b.set];
             w.dstBinding = b.binding;
-            w.dstArrayElement = i;
+            w.dstArrayElement = place;
             w.descriptorCount = 1;
             w.descriptorType = descriptor_type(b.kind);
             Bound::Written written{&b, i, {}, nullptr};

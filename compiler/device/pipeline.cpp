@@ -4,6 +4,7 @@
 #include <map>
 
 #include "compiler/device/facts.h"
+#include "compiler/device/spare.h"
 
 namespace kiln {
 
@@ -34,8 +35,18 @@ void make_modules(Context& context, const PipelineRequest& request, Pipeline& ou
 void make_layout(Context& context, const PipelineRequest& request, Pipeline& out) {
     const Inputs& inputs = request.inputs.front();
     std::map<uint32_t, std::vector<VkDescriptorSetLayoutBinding>> sets;
+    std::vector<UniformUse> uniforms;
     for (const Binding& b : inputs.bindings)
-        sets[b.set].push_back({b.binding, descriptor_type(b.kind), b.descriptors, users(request, b.set, b.binding), nullptr});
+        if (b.kind == ResourceKind::uniform_block) uniforms.push_back({b.descriptors, users(request, b.set, b.binding)});
+    const std::vector<uint32_t> spare =
+        spare_descriptors(uniforms, context.properties.limits.maxPerStageDescriptorUniformBuffers);
+    size_t uniform = 0;
+    for (const Binding& b : inputs.bindings) {
+        const uint32_t more = b.kind == ResourceKind::uniform_block ? spare[uniform++] : 0;
+        if (more != 0) out.spare[{b.set, b.binding}] = more;
+        sets[b.set].push_back(
+            {b.binding, descriptor_type(b.kind), b.descriptors + more, users(request, b.set, b.binding), nullptr});
+    }
     const uint32_t count = sets.empty() ? 0 : sets.rbegin()->first + 1;
     if (count > context.properties.limits.maxBoundDescriptorSets) {
         context.failure = "descriptor set " + std::to_string(count - 1) + " is past the device's limit of " +

@@ -1,6 +1,8 @@
 #pragma once
 // A Vulkan pipeline, its layout and its render pass for one request. Internal to compiler/device.
 
+#include <map>
+
 #include "compiler/device/memory.h"
 
 namespace kiln {
@@ -21,6 +23,7 @@ struct InputImage {
 struct Pipeline {
     std::vector<VkDescriptorSetLayout> sets;
     VkPipelineLayout layout = VK_NULL_HANDLE;
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> spare;  // by (set, binding): descriptors that no shader has (spare.h)
     VkShaderStageFlags push_stages = 0;
     VkRenderPass pass = VK_NULL_HANDLE;       // clears its attachments
     VkRenderPass load_pass = VK_NULL_HANDLE;  // keeps what they hold; only after make_load_pass()
