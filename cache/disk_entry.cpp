@@ -1,5 +1,6 @@
 #include "cache/disk_entry.h"
 
+#include <algorithm>
 #include <string_view>
 
 #include "compiler/base/wire.h"
@@ -40,6 +41,28 @@ std::optional<ByteView> action_payload(const Digest& key, ByteView file) {
     const ByteView head = file.first(action_head_size);
     if (as_text(head) != as_text(expected)) return std::nullopt;
     return payload;
+}
+
+std::string entry_problem(Keyspace space, const Digest& key, ByteView file) {
+    if (space == Keyspace::blob) {
+        const Digest holds = sha256(file);
+        if (holds == key) return {};
+        return "its " + std::to_string(file.size()) + " bytes have the SHA-256 " + holds.hex();
+    }
+    if (action_payload(key, file)) return {};
+    if (file.size() < action_head_size)
+        return "a record of " + std::to_string(file.size()) + " bytes is shorter than its head of " +
+               std::to_string(action_head_size);
+    WireReader in(file);
+    if (as_text(in.raw(magic.size())) != magic) return "it does not begin with " + std::string(magic);
+    Digest named;
+    const ByteView name = in.raw(named.bytes.size());
+    std::copy(name.begin(), name.end(), named.bytes.begin());
+    if (named != key) return "it is the record of " + named.hex();
+    const uint64_t size = in.u64();
+    if (size != file.size() - action_head_size)
+        return "its head says " + std::to_string(size) + " bytes, it holds " + std::to_string(file.size() - action_head_size);
+    return "its checksum does not match";
 }
 
 }  // namespace kiln

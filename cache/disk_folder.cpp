@@ -26,6 +26,15 @@ bool is_temporary(std::string_view name) {
     return name.size() == 16 + temporary_suffix.size() && is_hex(name.substr(0, 16), 16) && name.substr(16) == temporary_suffix;
 }
 
+bool is_quarantined(std::string_view name) {
+    for (const Keyspace space : {Keyspace::action, Keyspace::blob}) {
+        const std::string_view prefix = folder_name(space);
+        if (name.size() == prefix.size() + 1 + 64 + 1 + 16 && name.substr(0, prefix.size()) == prefix)
+            return is_hex(name.substr(prefix.size() + 1, 64), 64) && is_hex(name.substr(prefix.size() + 66), 16);
+    }
+    return false;
+}
+
 Status names_in(const std::string& folder, std::vector<std::string>& names) {
     DIR* dir = ::opendir(folder.c_str());
     if (dir == nullptr) {
@@ -58,17 +67,39 @@ Error io_error(const std::string& path, const char* doing, int code) {
 
 const char* folder_name(Keyspace space) { return space == Keyspace::action ? "action" : "blob"; }
 
-std::string temporary_name() {
-    // Collisions only cost another try, since drafts are created exclusively: a clock, a process and a count are enough.
-    static std::atomic<uint64_t> serial{0};
+std::string entry_path(const std::string& folder, Keyspace space, const Digest& key) {
+    const std::string hex = key.hex();
+    return folder + "/" + folder_name(space) + "/" + hex.substr(0, 2) + "/" + hex;
+}
+
+int64_t system_time() {
     timespec now{};
     ::clock_gettime(CLOCK_REALTIME, &now);
-    const uint64_t parts[] = {static_cast<uint64_t>(now.tv_sec), static_cast<uint64_t>(now.tv_nsec),
-                              static_cast<uint64_t>(::getpid()), serial++};
+    return int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+int64_t time_of(const struct stat& info) { return int64_t{info.st_mtim.tv_sec} * 1'000'000'000 + info.st_mtim.tv_nsec; }
+
+bool set_time(int fd, int64_t time) {
+    const timespec both{time / 1'000'000'000, time % 1'000'000'000};
+    const timespec times[] = {both, both};
+    return ::futimens(fd, times) == 0;
+}
+
+std::string unique_name() {
+    // Collisions only cost another try, since drafts are created exclusively: a clock, a process and a count are enough.
+    static std::atomic<uint64_t> serial{0};
+    const uint64_t parts[] = {static_cast<uint64_t>(system_time()), static_cast<uint64_t>(::getpid()), serial++};
     const uint64_t value = xxh3({reinterpret_cast<const uint8_t*>(parts), sizeof parts}).low;
     char text[17];
     std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-    return text + std::string(temporary_suffix);
+    return text;
+}
+
+std::string temporary_name() { return unique_name() + std::string(temporary_suffix); }
+
+std::string quarantine_name(Keyspace space, const Digest& key) {
+    return folder_name(space) + ("-" + key.hex()) + "-" + unique_name();
 }
 
 bool Descriptor::close() {
@@ -113,5 +144,9 @@ Status each_entry(const std::string& folder, Keyspace space, const Visit& visit)
 }
 
 Status each_temporary(const std::string& folder, const Visit& visit) { return each_file(folder + "/tmp", is_temporary, visit); }
+
+Status each_quarantined(const std::string& folder, const Visit& visit) {
+    return each_file(folder + "/quarantine", is_quarantined, visit);
+}
 
 }  // namespace kiln

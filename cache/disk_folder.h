@@ -13,9 +13,16 @@ namespace kiln {
 Error io_error(const std::string& path, const char* doing, int code);
 
 const char* folder_name(Keyspace space);
+std::string entry_path(const std::string& folder, Keyspace space, const Digest& key);
 
-// Unique among threads, processes and machines that share the folder: 16 hex digits and ".part".
-std::string temporary_name();
+// Nanoseconds since 1970: the clock's, a file's time of last use.
+int64_t system_time();
+int64_t time_of(const struct stat& info);
+bool set_time(int fd, int64_t time);
+
+// Unique among threads, processes and machines that share the folder: 16 hex digits.
+std::string unique_name();
+std::string temporary_name();  // that and ".part"
 
 class Descriptor {
 public:
@@ -42,5 +49,8 @@ using Visit = std::function<int(const std::string& path, const struct stat& info
 // followed.
 Status each_entry(const std::string& folder, Keyspace space, const Visit& visit);
 Status each_temporary(const std::string& folder, const Visit& visit);
+// Entries that were found damaged and set aside: quarantine/<keyspace>-<key>-<unique name>.
+Status each_quarantined(const std::string& folder, const Visit& visit);
+std::string quarantine_name(Keyspace space, const Digest& key);
 
 }  // namespace kiln

@@ -1,7 +1,6 @@
-// Publishing is write, close, rename, with no flush between: some thousands of entries of a few KiB cost 13,000 a second
-// this way and 2,000 with fdatasync, and what a flush would save from a power cut the check on the next read finds.
-// An entry that fails the check is unlinked without a lock. Another process may have replaced it by a good one in that
-// moment; then a good entry is lost, which is a miss.
+// The slow part of publishing, writing and flushing, happens before the lock is taken; under it an entry is counted and renamed,
+// some tens of microseconds. Since everybody who removes a file holds the lock as well, a name that was given stays until it is
+// evicted.
 #include "cache/disk_store.h"
 
 #include <fcntl.h>
@@ -10,11 +9,12 @@
 
 #include <cerrno>
 #include <cstdlib>
-#include <ctime>
+#include <cstring>
 #include <filesystem>
 
 #include "cache/disk_entry.h"
 #include "cache/disk_folder.h"
+#include "cache/disk_read.h"
 
 namespace kiln {
 
@@ -22,8 +22,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr uint64_t largest_entry = uint64_t{1} << 30;
-constexpr time_t stale_after = 3600;  // seconds
+constexpr uint64_t largest_payload = (uint64_t{1} << 30) - action_head_size;
+constexpr int64_t stale_after = int64_t{3600} * 1'000'000'000;
+
+bool same(ByteView file, ByteView head, ByteView body) {
+    return file.size() == head.size() + body.size() && as_text(file.first(head.size())) == as_text(head) &&
+           as_text(file.subspan(head.size())) == as_text(body);
+}
+
+// So that the names in `folder` survive a power cut. 0, or the errno.
+int flush_folder(const std::string& folder) {
+    const Descriptor fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    return fd.get() >= 0 && ::fsync(fd.get()) == 0 ? 0 : errno;
+}
 
 }  // namespace
 
@@ -35,7 +46,18 @@ std::string default_cache_folder() {
     return {};
 }
 
-Result<std::unique_ptr<DiskStore>> DiskStore::open(const std::string& folder) {
+DiskStore::DiskStore(std::string folder, DiskOptions options)
+    : folder_(std::move(folder)),
+      options_(std::move(options)),
+      lock_(folder_ + "/lock", options_.lock_wait),
+      bound_(folder_, options_) {}
+
+DiskStore::~DiskStore() {
+    if (!bound_.has_index()) return;
+    if (const auto held = lock_.take(); held.ok()) bound_.close();
+}
+
+Result<std::unique_ptr<DiskStore>> DiskStore::open(const std::string& folder, DiskOptions options) {
     if (folder.empty()) return environment_error("cache: no folder given");
     std::error_code failed;
     const std::string path = fs::absolute(folder, failed).lexically_normal().string();
@@ -47,15 +69,12 @@ Result<std::unique_ptr<DiskStore>> DiskStore::open(const std::string& folder) {
                       : io_error(path, "open", errno);
     if (!S_ISDIR(info.st_mode)) return environment_error("cache: " + path + ": is not a folder");
     if (::access(path.c_str(), R_OK | X_OK) != 0) return io_error(path, "open", errno);
-    auto store = std::unique_ptr<DiskStore>(new DiskStore(path));
+    auto store = std::unique_ptr<DiskStore>(new DiskStore(path, std::move(options)));
     store->sweep_temporaries();
     return store;
 }
 
-std::string DiskStore::entry_path(Keyspace space, const Digest& key) const {
-    const std::string hex = key.hex();
-    return folder_ + "/" + folder_name(space) + "/" + hex.substr(0, 2) + "/" + hex;
-}
+int64_t DiskStore::now() const { return options_.now ? options_.now() : system_time(); }
 
 Result<std::optional<Bytes>> DiskStore::get(Keyspace space, const Digest& key) {
     auto got = load(space, key);
@@ -66,63 +85,38 @@ Result<std::optional<Bytes>> DiskStore::get(Keyspace space, const Digest& key) {
     return got;
 }
 
-Result<std::optional<Bytes>> DiskStore::load(Keyspace space, const Digest& key) {
-    const std::string path = entry_path(space, key);
-    const std::optional<Bytes> absent;
-    // Non-blocking, so that a pipe under an entry's name cannot hang a build.
-    const Descriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-    if (fd.get() < 0) {
-        if (errno == ENOENT || errno == ENOTDIR) return absent;
-        return io_error(path, "open", errno);
-    }
-    struct stat info {};
-    if (::fstat(fd.get(), &info) != 0) return io_error(path, "inspect", errno);
-    if (S_ISREG(info.st_mode) && static_cast<uint64_t>(info.st_size) <= largest_entry) {
-        Bytes file(static_cast<size_t>(info.st_size));
-        if (!read_all(fd.get(), file)) return io_error(path, "read", errno);
-        if (space == Keyspace::blob) {
-            if (sha256(file) == key) return std::optional<Bytes>(std::move(file));
-        } else if (action_payload(key, file)) {
-            file.erase(file.begin(), file.begin() + action_head_size);
-            return std::optional<Bytes>(std::move(file));
-        }
-    }
-    ++corrupt_;
-    ::unlink(path.c_str());
-    return absent;
-}
-
 Status DiskStore::put(Keyspace space, const Digest& key, ByteView bytes) {
-    if (bytes.size() > largest_entry - action_head_size) {
+    const auto refuse = [&](Error error) -> Status {
         ++failures_;
-        return environment_error("cache: an entry of " + std::to_string(bytes.size()) + " bytes is too large");
+        return error;
+    };
+    if (bytes.size() > largest_payload)
+        return refuse(environment_error("cache: an entry of " + std::to_string(bytes.size()) + " bytes is too large"));
+    if (space == Keyspace::blob && sha256(bytes) != key)
+        return refuse(environment_error("cache: a blob does not match its name " + key.hex()));
+    const Bytes head = space == Keyspace::action ? action_head(key, bytes) : Bytes();
+    Reading there = read(space, key, true);
+    if (there.is == Reading::Is::damaged) {
+        ++corrupt_;
+        std::string kept;
+        there = set_aside(space, key, kept);
     }
-    const std::string path = entry_path(space, key);
-    Bytes head;
-    if (space == Keyspace::action) {
-        head = action_head(key, bytes);
-    } else {
-        if (sha256(bytes) != key) {
-            ++failures_;
-            return environment_error("cache: a blob does not match its name " + key.hex());
-        }
-        struct stat info {};
-        if (::stat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode) && static_cast<uint64_t>(info.st_size) == bytes.size()) {
-            ++already_there_;
-            return {};
-        }
+    if (there.is == Reading::Is::whole && same(there.file, head, bytes)) {
+        ++already_there_;
+        return {};
     }
-    const Status status = publish(path, head, bytes);
+    const Status status = publish(space, key, head, bytes);
     ++(status.ok() ? written_ : failures_);
     return status;
 }
 
-Status DiskStore::publish(const std::string& path, ByteView head, ByteView body) {
+Status DiskStore::publish(Keyspace space, const Digest& key, ByteView head, ByteView body) {
     const std::string drafts = folder_ + "/tmp";
     std::string draft;
     int raw = -1;
     for (int attempt = 0; attempt < 8 && raw < 0; ++attempt) {
         draft = drafts + "/" + temporary_name();
+        if (const int code = step(DiskStep::create); code != 0) return io_error(drafts, "create a file", code);
         raw = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (raw >= 0) break;
         if (errno == ENOENT) {
@@ -135,30 +129,62 @@ Status DiskStore::publish(const std::string& path, ByteView head, ByteView body)
     }
     if (raw < 0) return io_error(drafts, "create a file", errno);
     Descriptor fd(raw);
-    int code = 0;
-    const auto done = [&] {
-        if (!write_all(fd.get(), head) || !write_all(fd.get(), body) || !fd.close()) return false;
-        if (::rename(draft.c_str(), path.c_str()) == 0) return true;
-        if (errno != ENOENT) return false;
-        std::error_code failed;
-        fs::create_directories(fs::path(path).parent_path(), failed);
-        if (failed) {
-            errno = failed.value();
-            return false;
-        }
-        return ::rename(draft.c_str(), path.c_str()) == 0;
+    const auto fails = [&](DiskStep which) {
+        errno = step(which);
+        return errno != 0;
     };
-    if (done()) return {};
-    code = errno;
-    ::unlink(draft.c_str());
-    return io_error(path, "write", code);
+    const auto write = [&] {
+        if (fails(DiskStep::write) || !write_all(fd.get(), head) || !write_all(fd.get(), body)) return false;
+        (void)set_time(fd.get(), now());
+        if (options_.sync != Sync::none && (fails(DiskStep::sync) || ::fdatasync(fd.get()) != 0)) return false;
+        return fd.close();
+    };
+    Status status =
+        write() ? name_draft(space, key, draft, head.size() + body.size()) : io_error(path_of(space, key), "write", errno);
+    if (!status.ok()) ::unlink(draft.c_str());
+    return status;
+}
+
+Status DiskStore::name_draft(Keyspace space, const Digest& key, const std::string& draft, uint64_t size) {
+    const std::string path = path_of(space, key), shard = fs::path(path).parent_path();
+    bool new_shard = false;
+    {
+        if (const int code = step(DiskStep::lock); code != 0) return io_error(folder_, "lock", code);
+        const auto held = lock_.take();
+        KILN_TRY(held);
+        const Status admitted = bound_.admit(space, key, size, held->among_processes());
+        evicted_ = bound_.evicted();
+        KILN_TRY(admitted);
+        struct stat written {
+        }, named{};
+        if (::lstat(draft.c_str(), &written) != 0) return io_error(draft, "inspect", errno);
+        if (const int code = step(DiskStep::rename); code != 0) return io_error(path, "write", code);
+        int code = ::rename(draft.c_str(), path.c_str()) == 0 ? 0 : errno;
+        if (code == ENOENT) {
+            std::error_code failed;
+            new_shard = fs::create_directories(shard, failed);
+            if (failed) return io_error(shard, "create", failed.value());
+            code = ::rename(draft.c_str(), path.c_str()) == 0 ? 0 : errno;
+        }
+        // A network file system that sent the request twice reports the second one's failure.
+        const bool arrived = code == ENOENT && ::lstat(path.c_str(), &named) == 0 && named.st_ino == written.st_ino &&
+                             named.st_dev == written.st_dev;
+        if (code != 0 && !arrived) return io_error(path, "write", code);
+    }
+    if (options_.sync != Sync::folder) return {};
+    if (const int code = flush_folder(shard); code != 0) return io_error(shard, "flush", code);
+    if (!new_shard) return {};
+    for (std::string above = folder_ + "/" + folder_name(space); above.size() >= folder_.size();
+         above = fs::path(above).parent_path())
+        if (const int code = flush_folder(above); code != 0) return io_error(above, "flush", code);
+    return {};
 }
 
 // What a killed process left. A live one renames its file within moments; an hour allows for a suspended machine.
 void DiskStore::sweep_temporaries() const {
-    const time_t now = std::time(nullptr);
+    const int64_t oldest = now() - stale_after;
     const Status swept = each_temporary(folder_, [&](const std::string& path, const struct stat& info) {
-        if (info.st_mtime + stale_after < now) ::unlink(path.c_str());
+        if (time_of(info) < oldest) ::unlink(path.c_str());
         return 0;
     });
     (void)swept;  // best effort: a folder that cannot be read is reported by whoever needs it
@@ -166,37 +192,50 @@ void DiskStore::sweep_temporaries() const {
 
 Result<DiskStore::Stats> DiskStore::stats() const {
     Stats stats;
-    const auto add = [](Use& use) {
+    const auto add = [](DiskUse& use) {
         return [&use](const std::string&, const struct stat& info) {
-            ++use.entries;
-            use.bytes += static_cast<uint64_t>(info.st_size);
+            use.add(static_cast<uint64_t>(info.st_size));
             return 0;
         };
     };
     KILN_TRY(each_entry(folder_, Keyspace::action, add(stats.action)));
     KILN_TRY(each_entry(folder_, Keyspace::blob, add(stats.blob)));
     KILN_TRY(each_temporary(folder_, add(stats.temporary)));
+    KILN_TRY(each_quarantined(folder_, add(stats.quarantine)));
     return stats;
 }
 
+Result<DiskStore::Shrunk> DiskStore::gc(uint64_t target) {
+    sweep_temporaries();
+    const auto held = lock_.take();
+    KILN_TRY(held);
+    auto shrunk = bound_.shrink(target, held->among_processes());
+    evicted_ = bound_.evicted();
+    return shrunk;
+}
+
 Result<DiskStore::Stats> DiskStore::clear() {
+    const auto held = lock_.take();
+    KILN_TRY(held);
     Stats removed;
-    const auto remove = [](Use& use) {
+    const auto remove = [](DiskUse& use) {
         return [&use](const std::string& path, const struct stat& info) {
             if (::unlink(path.c_str()) != 0) return errno == ENOENT ? 0 : errno;
-            ++use.entries;
-            use.bytes += static_cast<uint64_t>(info.st_size);
+            use.add(static_cast<uint64_t>(info.st_size));
             return 0;
         };
     };
     KILN_TRY(each_entry(folder_, Keyspace::action, remove(removed.action)));
     KILN_TRY(each_entry(folder_, Keyspace::blob, remove(removed.blob)));
     KILN_TRY(each_temporary(folder_, remove(removed.temporary)));
+    KILN_TRY(each_quarantined(folder_, remove(removed.quarantine)));
+    bound_.reset();
     return removed;
 }
 
 DiskStore::Counters DiskStore::counters() const {
-    return {hits_.load(), misses_.load(), corrupt_.load(), written_.load(), already_there_.load(), failures_.load()};
+    return {hits_.load(),          misses_.load(),  corrupt_.load(), written_.load(),
+            already_there_.load(), evicted_.load(), failures_.load()};
 }
 
 }  // namespace kiln

@@ -148,25 +148,27 @@ int run_build(const Args& args) {
 
 }  // namespace
 
-const Verb verb_build{
-    "build",
-    "MANIFEST -o T.kiln [--scene S]… [--target T]… [--cache DIR] [-j N] [-g] [--parse-back] [--header F] [--depfile D] "
-    "[--json | --report-json F]",
-    "compile a manifest into a variant table and its proof",
-    1,
-    1,
-    {{"--output", "-o", "FILE", "the table; its proof goes beside it as FILE.proof"},
-     option_scene,
-     {"--target", nullptr, "NAME", "instead of the manifest's targets", true},
-     option_cache,
-     option_jobs,
-     {"-g", nullptr, nullptr, "keep names and lines for debuggers; layout then tells classes apart"},
-     {"--parse-back", nullptr, nullptr, "parse and link every emitted GLSL and ESSL text again"},
-     {"--header", nullptr, "FILE", "write a C++ header with the key's bit fields"},
-     {"--depfile", nullptr, "FILE", "write the files read, for Ninja and make"},
-     option_json,
-     {"--report-json", nullptr, "FILE", "write the JSON document to a file"}},
-    "kiln build manifests/surface.yaml -o surface.kiln --target spirv --target msl21",
-    run_build};
+const Verb verb_build{"build",
+                      "MANIFEST -o T.kiln [--scene S]… [--target T]… [--cache DIR] [--cache-size SIZE] [-j N] [-g] "
+                      "[--parse-back] [--header F] [--depfile D] "
+                      "[--json | --report-json F]",
+                      "compile a manifest into a variant table and its proof",
+                      1,
+                      1,
+                      {{"--output", "-o", "FILE", "the table; its proof goes beside it as FILE.proof"},
+                       option_scene,
+                       {"--target", nullptr, "NAME", "instead of the manifest's targets", true},
+                       option_cache,
+                       option_cache_size,
+                       option_chaos,
+                       option_jobs,
+                       {"-g", nullptr, nullptr, "keep names and lines for debuggers; layout then tells classes apart"},
+                       {"--parse-back", nullptr, nullptr, "parse and link every emitted GLSL and ESSL text again"},
+                       {"--header", nullptr, "FILE", "write a C++ header with the key's bit fields"},
+                       {"--depfile", nullptr, "FILE", "write the files read, for Ninja and make"},
+                       option_json,
+                       {"--report-json", nullptr, "FILE", "write the JSON document to a file"}},
+                      "kiln build manifests/surface.yaml -o surface.kiln --target spirv --target msl21",
+                      run_build};
 
 }  // namespace kiln

@@ -24,6 +24,7 @@ THIRD_PARTY = {
     "glslang/": {"compiler/toolchain/glsl.cpp"},
     "spirv-tools/": {"compiler/toolchain/spirv.cpp"},
     "spirv_cross/": {"compiler/toolchain/cross.cpp"},
+    "lmdb": {"cache/disk_index.cpp"},
     "lz4": {"compiler/table/table_text.cpp"},
     "png": {"compiler/device/png.cpp"},
 }

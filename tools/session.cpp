@@ -1,5 +1,7 @@
 #include "tools/session.h"
 
+#include <cstdlib>
+
 #include "cache/disk_store.h"
 #include "tools/console.h"
 
@@ -10,24 +12,82 @@ const Option option_cache{"--cache", nullptr, "DIR", "cache folder, or 'none'; d
 const Option option_jobs{"--jobs", "-j", "N", "threads; default one a core"};
 const Option option_json{"--json", nullptr, nullptr, "print one JSON document on standard output"};
 const Option option_shader{"--shader", nullptr, "NAME", "which shader, where there are several"};
+const Option option_cache_size{"--cache-size", nullptr, "SIZE",
+                               "bound of the cache, as 300M or 5G; 0 for none; default $KILN_CACHE_SIZE, else 5G"};
+const Option option_chaos{
+    "--chaos", nullptr, "SPEC",
+    "for tests: hurt the cache, as seed=1,loss=0.1,error=0.1,flip=0.1,delay=2 (chances of 1, milliseconds)"};
+
+Result<uint64_t> parse_size(const std::string& what, const std::string& text) {
+    const Error wrong{Fault::usage, what + " takes a size such as 300M or 5G, not '" + text + "'"};
+    std::string digits = text;
+    uint64_t unit = 1;
+    if (!digits.empty()) {
+        const size_t scale = std::string("kKmMgGtT").find(digits.back());
+        if (scale != std::string::npos) {
+            unit = uint64_t{1} << (10 * (scale / 2 + 1));
+            digits.pop_back();
+        }
+    }
+    if (digits.empty() || digits.size() > 18 || digits.find_first_not_of("0123456789") != std::string::npos) return wrong;
+    const uint64_t number = std::stoull(digits);
+    if (number > (uint64_t{1} << 60) / unit) return wrong;
+    return number * unit;
+}
+
+Result<DiskOptions> cache_options(const Args& args) {
+    DiskOptions options;
+    options.sync = Sync::none;
+    if (const char* size = std::getenv("KILN_CACHE_SIZE"); args.has("--cache-size") || (size != nullptr && *size != '\0')) {
+        const auto limit = args.has("--cache-size") ? parse_size("--cache-size", args.value("--cache-size"))
+                                                    : parse_size("KILN_CACHE_SIZE", size);
+        KILN_TRY(limit);
+        options.limit = *limit;
+    }
+    if (const char* how = std::getenv("KILN_CACHE_SYNC"); how != nullptr && *how != '\0') {
+        const std::string name = how;
+        if (name != "none" && name != "file" && name != "folder")
+            return Error{Fault::usage, "KILN_CACHE_SYNC is none, file or folder, not '" + name + "'"};
+        options.sync = name == "none" ? Sync::none : name == "file" ? Sync::file : Sync::folder;
+    }
+    return options;
+}
+
+Session::~Session() {
+    if (!chaos) return;
+    const ChaosStore::Counters did = chaos->counters();
+    print_note("chaos: lost " + std::to_string(did.lost) + ", failed " + std::to_string(did.failed) + ", flipped " +
+               std::to_string(did.flipped) + ", delayed " + std::to_string(did.delayed));
+}
 
 Result<std::unique_ptr<Session>> Session::open(const Args& args) {
     auto session = std::make_unique<Session>();
     const auto threads = args.number("--jobs", 0, 1, 1024);
     KILN_TRY(threads);
     session->jobs = std::make_unique<Jobs>(static_cast<unsigned>(*threads));
+    const auto disk = cache_options(args);
+    KILN_TRY(disk);
+    const auto chaos = Chaos::parse(args.value("--chaos"));
+    KILN_TRY(chaos);
     const std::string where = args.value("--cache", default_cache_folder());
+    ChaosStore::Flip flip;
     if (where != "none" && !where.empty()) {
-        auto store = DiskStore::open(where);
-        if (store.ok())
+        auto store = DiskStore::open(where, *disk);
+        if (store.ok()) {
+            flip = [on_disk = store->get()](Keyspace space, const Digest& key, uint64_t dice) {
+                return flip_bit(on_disk->path_of(space, key), dice);
+            };
             session->store = std::move(*store);
-        else
+        } else {
             print_note("warning: building without a cache: " + store.error().message);
+        }
     }
     if (!session->store) session->store = std::make_unique<NoStore>();
+    if (args.has("--chaos")) session->chaos = std::make_unique<ChaosStore>(*session->store, *chaos, std::move(flip));
+    Store& store = session->chaos ? static_cast<Store&>(*session->chaos) : *session->store;
     session->tools = make_toolchain();
-    session->context = std::make_unique<PassContext>(
-        PassContext{session->files, *session->store, *session->tools, *session->jobs, terminal_progress()});
+    session->context =
+        std::make_unique<PassContext>(PassContext{session->files, store, *session->tools, *session->jobs, terminal_progress()});
     return session;
 }
 

@@ -3,6 +3,8 @@
 
 #include <memory>
 
+#include "cache/chaos_store.h"
+#include "cache/disk_options.h"
 #include "compiler/pass.h"
 #include "tools/args.h"
 
@@ -11,16 +13,25 @@ namespace kiln {
 struct Session {
     DiskFiles files;
     std::unique_ptr<Store> store;
+    std::unique_ptr<ChaosStore> chaos;  // in front of `store`, when --chaos asks for it
     std::unique_ptr<Toolchain> tools;
     std::unique_ptr<Jobs> jobs;
     std::unique_ptr<PassContext> context;
 
     // Opens the cache that --cache names ("none": only this run's memory); one that cannot be opened is a warning.
     static Result<std::unique_ptr<Session>> open(const Args& args);
+    ~Session();  // says what --chaos did
 };
 
 // Options shared by verbs; `scene`, `cache` and `jobs` read by build_options and Session::open.
-extern const Option option_scene, option_cache, option_jobs, option_json, option_shader;
+extern const Option option_scene, option_cache, option_jobs, option_json, option_shader, option_cache_size, option_chaos;
+
+// "5G", "300M", "64k", "4096"; 0 is no bound. Binary units.
+Result<uint64_t> parse_size(const std::string& what, const std::string& text);
+// The bound from --cache-size, else KILN_CACHE_SIZE, else the default; flushing from KILN_CACHE_SYNC (none, file, folder), which
+// is none for a build: to flush each entry took half as long again as a cold build, to save from a power cut what is checked when
+// it is read.
+Result<DiskOptions> cache_options(const Args& args);
 
 Result<BuildOptions> build_options(const Args& args);
 

@@ -6,7 +6,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <functional>
+#include <thread>
 
 #include "cache/disk_store.h"
 #include "tests/unit/cache/folder.h"
@@ -123,6 +125,101 @@ TEST(DiskStoreFaults, AFolderThatMayNotBeEnteredIsAnError) {
     });
     if (code == skipped) GTEST_SKIP() << "cannot give up root here";
     EXPECT_EQ(code, 0);
+}
+
+TEST(DiskStoreFaults, AFailureAtAnyStepIsAnErrorThatLeavesNothing) {
+    const TestFolder folder;
+    for (const Sync sync : {Sync::none, Sync::file, Sync::folder}) {
+        for (const int code : {EIO, ENOSPC, EDQUOT, EACCES, EMFILE}) {
+            for (const DiskStep bad : {DiskStep::create, DiskStep::write, DiskStep::sync, DiskStep::lock, DiskStep::rename}) {
+                DiskOptions options;
+                options.sync = sync;
+                std::vector<DiskStep> seen;
+                options.before = [&](DiskStep step) {
+                    seen.push_back(step);
+                    return step == bad ? code : 0;
+                };
+                const auto store = std::move(*DiskStore::open(folder.path(), options));
+                const std::string text = std::to_string(code) + " " + std::to_string(static_cast<int>(bad));
+                if (sync == Sync::none && bad == DiskStep::sync) continue;
+                EXPECT_FALSE(put(*store, text).ok());
+                EXPECT_EQ(seen.back(), bad);
+                EXPECT_FALSE(holds(*store, text));
+                EXPECT_EQ(store->stats()->temporary.entries, 0u);
+            }
+        }
+    }
+}
+
+TEST(DiskStoreFaults, BytesAreFlushedBeforeTheyGetTheirName) {
+    const TestFolder folder;
+    DiskOptions options;
+    options.sync = Sync::folder;
+    std::vector<DiskStep> seen;
+    options.before = [&](DiskStep step) {
+        seen.push_back(step);
+        return 0;
+    };
+    const auto store = std::move(*DiskStore::open(folder.path(), options));
+    EXPECT_TRUE(put(*store, "text").ok());
+    using S = DiskStep;
+    EXPECT_EQ(seen, (std::vector<DiskStep>{S::create, S::create, S::write, S::sync, S::lock, S::account, S::rename}));
+}
+
+TEST(DiskStoreFaults, ASlowDiskOnlyTakesLonger) {
+    const TestFolder folder;
+    DiskOptions options = unflushed();
+    options.before = [](DiskStep step) {
+        if (step == DiskStep::rename || step == DiskStep::write) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        return 0;
+    };
+    const auto one = std::move(*DiskStore::open(folder.path(), options));
+    const auto two = std::move(*DiskStore::open(folder.path(), options));
+    std::vector<std::thread> threads;
+    std::atomic<int> failed{0};
+    for (int t = 0; t < 4; ++t) {
+        threads.emplace_back([&, t] {
+            for (int i = 0; i < 5; ++i) {
+                DiskStore& store = t % 2 == 0 ? *one : *two;
+                const std::string text = std::to_string(t * 100 + i);
+                failed += !put(store, text).ok() || !holds(store, text);
+            }
+        });
+    }
+    for (std::thread& t : threads) t.join();
+    EXPECT_EQ(failed, 0);
+    EXPECT_EQ(one->stats()->blob.entries, 20u);
+}
+
+TEST(DiskStoreFaults, AStoppedProcessThatHoldsTheLockCostsOneWait) {
+    const TestFolder folder;
+    ASSERT_TRUE(put(**DiskStore::open(folder.path()), "before").ok());
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        FolderLock lock(folder.path() + "/lock", std::chrono::seconds(1));
+        const auto held = lock.take();
+        ::raise(SIGSTOP);
+        ::_exit(held.ok() ? 0 : 1);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, WUNTRACED), child);
+    ASSERT_TRUE(WIFSTOPPED(status));
+    DiskOptions options = unflushed();
+    options.lock_wait = std::chrono::milliseconds(50);
+    const auto store = std::move(*DiskStore::open(folder.path(), options));
+    size_t waits = 0;
+    for (int i = 0; i < 100; ++i) {
+        const auto start = std::chrono::steady_clock::now();
+        EXPECT_FALSE(put(*store, std::to_string(i)).ok());
+        waits += std::chrono::steady_clock::now() - start > std::chrono::milliseconds(45);
+        EXPECT_TRUE(holds(*store, "before"));  // reads need no lock
+    }
+    EXPECT_LT(waits, 50u);
+    EXPECT_EQ(store->stats()->temporary.entries, 0u);
+    ::kill(child, SIGKILL);  // whose lock goes with it
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_TRUE(put(**DiskStore::open(folder.path(), options), "after").ok());
 }
 
 TEST(DiskStoreFaults, AFullDiskIsAnErrorAndLosesNothing) {

@@ -63,7 +63,7 @@ TEST(DiskStoreProcesses, FourProcessesOfTwoThreadsShareAFolder) {
         const pid_t child = ::fork();
         ASSERT_GE(child, 0);
         if (child == 0) {
-            auto store = DiskStore::open(folder.path());
+            auto store = DiskStore::open(folder.path(), unflushed());
             if (!store.ok()) ::_exit(100);
             int wrong[2] = {};
             std::thread other([&] { wrong[1] = hammer(**store, 100 + p, 600); });
@@ -81,7 +81,7 @@ TEST(DiskStoreProcesses, FourProcessesOfTwoThreadsShareAFolder) {
         EXPECT_TRUE(WIFEXITED(status));
         EXPECT_EQ(WEXITSTATUS(status), 0);
     }
-    const auto stats = (*DiskStore::open(folder.path()))->stats();
+    const auto stats = (*DiskStore::open(folder.path(), unflushed()))->stats();
     EXPECT_EQ(stats->temporary.entries, 0u);
     EXPECT_LE(stats->blob.entries, 60u);
     EXPECT_GT(stats->blob.entries, 40u);
@@ -92,7 +92,7 @@ TEST(DiskStoreProcesses, ClearingUnderWritersCostsOnlyMisses) {
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
-        auto store = DiskStore::open(folder.path());
+        auto store = DiskStore::open(folder.path(), unflushed());
         // A temporary file may be cleared before its rename; that put is an Error, and the only wrong answer there can be.
         int bad = 0;
         for (int i = 0; i < 800; ++i) {
@@ -104,7 +104,7 @@ TEST(DiskStoreProcesses, ClearingUnderWritersCostsOnlyMisses) {
         }
         ::_exit(bad == 0 ? 0 : 1);
     }
-    auto store = DiskStore::open(folder.path());
+    auto store = DiskStore::open(folder.path(), unflushed());
     int status = 0;
     while (::waitpid(child, &status, WNOHANG) == 0) EXPECT_TRUE((*store)->clear().ok());
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
@@ -119,7 +119,7 @@ TEST(DiskStoreProcesses, KilledWritersLeaveNothingHalfWritten) {
         const pid_t child = ::fork();
         ASSERT_GE(child, 0);
         if (child == 0) {
-            auto store = DiskStore::open(folder.path());
+            auto store = DiskStore::open(folder.path(), unflushed());
             for (uint32_t i = 0;; ++i) {
                 if (i != 0 && i < 300) (void)!::write(written[1], "", 1);
                 const std::string text = blob(round * 1000 + i % 300);
@@ -139,7 +139,7 @@ TEST(DiskStoreProcesses, KilledWritersLeaveNothingHalfWritten) {
         EXPECT_TRUE(WIFSIGNALED(status));
     }
     // Every entry that is visible is whole.
-    auto store = DiskStore::open(folder.path());
+    auto store = DiskStore::open(folder.path(), unflushed());
     uint64_t seen = 0;
     for (const auto& file : std::filesystem::recursive_directory_iterator(folder.path())) {
         const std::string name = file.path().filename().string();

@@ -29,6 +29,14 @@ private:
     std::string path_;
 };
 
+// Without flushing: what these tests end is processes, not the power.
+inline DiskOptions unflushed(uint64_t limit = default_cache_limit) {
+    DiskOptions options;
+    options.sync = Sync::none;
+    options.limit = limit;
+    return options;
+}
+
 inline Bytes bytes_of(std::string_view text) { return {as_bytes(text).begin(), as_bytes(text).end()}; }
 inline Digest name_of(std::string_view text) { return sha256(as_bytes(text)); }
 
