@@ -29,8 +29,8 @@ extern const Option option_scene, option_cache, option_jobs, option_json, option
 // "5G", "300M", "64k", "4096"; 0 is no bound. Binary units.
 Result<uint64_t> parse_size(const std::string& what, const std::string& text);
 // The bound from --cache-size, else KILN_CACHE_SIZE, else the default; flushing from KILN_CACHE_SYNC (none, file, folder), which
-// is none for a build: to flush each entry took half as long again as a cold build, to save from a power cut what is checked when
-// it is read.
+// is none for a build: to flush each entry made a cold build take up to half as long again, to save from a power cut what is
+// checked when it is read.
 Result<DiskOptions> cache_options(const Args& args);
 
 Result<BuildOptions> build_options(const Args& args);
