@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         if (again.size() != size || std::memcmp(again.data(), data, size) != 0) std::abort();
     }
     CleanMark made;
-    std::memcpy(&made, data, size < sizeof made ? size : sizeof made);
+    if (size != 0) std::memcpy(&made, data, size < sizeof made ? size : sizeof made);
     const auto back = read_mark(write_mark(made));
     if (!back || !(*back == made)) std::abort();
     return 0;
