@@ -1,34 +1,51 @@
 #!/usr/bin/env python3
 """Writes renderer/expected.json and renderer_*/expected.json: what `kiln count` must say of manifests/renderer.yaml and of its
-scenes: declared, legal and needed variants by listing (oracle.py). With --classes every text is preprocessed by glslc as well,
-which takes half an hour. Needs PyYAML, which the tests themselves do not.
+scenes: declared, legal and needed variants by listing (oracle.py), classes by preprocessing every listed variant (preprocess.py),
+some of them by glslc as well. Needs PyYAML. With --check it writes nothing and tells what
+differs from the files (exit code 4).
 """
+import hashlib
 import json
 import pathlib
+import random
 import sys
+import tempfile
 
 import yaml
 
 import oracle
+from preprocess import Preprocessor
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 STAGES = {"vertex": "vert", "fragment": "frag", "compute": "comp"}
 
 
-seen = {}
-preprocess = oracle.tokens_of
+ASK_GLSLC = 8  # of each shader's stages' texts
+
+with_glslc = 0
 
 
-def remembered(folder, file, stage, macros):
-    """Scenes ask for texts that the whole manifest has asked for; the files are the same in every folder."""
-    key = (file, stage, tuple(macros))
-    if key not in seen:
-        seen[key] = preprocess(folder, file, stage, macros)
-    return seen[key]
-
-
-oracle.tokens_of = remembered
+def texts_of(files, preprocessor, file, stage, axes, variants, fixed):
+    """Of each variant, the text of a stage as a hash."""
+    global with_glslc
+    read = preprocessor.words(file)
+    known, out = {}, []
+    for v in variants:
+        macros = tuple(fixed) + tuple((a["macro"], v[n]) for n, a in axes.items()
+                                      if a["macro"] in read and (a["values"] != "defined" or v[n] != 0))
+        if macros not in known:
+            known[macros] = hashlib.sha256("\n".join(preprocessor.tokens(file, macros)).encode()).hexdigest()
+        out.append(known[macros])
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in files.items():
+            path = pathlib.Path(folder, name)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text)
+        for macros in random.Random(7).sample(sorted(known), min(ASK_GLSLC, len(known))):
+            with_glslc += 1
+            assert preprocessor.tokens(file, macros) == oracle.tokens_of(folder, file, stage, macros), (file, macros)
+    return out
 
 
 def rules_of(block):
@@ -60,9 +77,15 @@ def with_stages(entry, stages):
 
 
 def write(folder, document):
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "expected.json").write_text(json.dumps(document, indent=2) + "\n")
-    print(folder.name, document["total"])
+    """Whether the file says so already; without --check it does afterwards."""
+    file = folder / "expected.json"
+    text = json.dumps(document, indent=2) + "\n"
+    same = file.exists() and file.read_text() == text
+    print(folder.name, document["total"], "" if same or "--check" not in sys.argv else "differs from " + file.name)
+    if "--check" not in sys.argv:
+        folder.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+    return same
 
 
 def main():
@@ -70,37 +93,38 @@ def main():
     scenes = {p.stem: yaml.safe_load(p.read_text()) for p in sorted((ROOT / "manifests/scenes").glob("renderer_*.yaml"))}
     files = {str(p.relative_to(ROOT / "uber")): p.read_text() for pattern in ("*.glsl", "*.vert", "*.frag", "*.comp", "lib/*.glsl")
              for p in (ROOT / "uber").glob(pattern)}
+    preprocessor = Preprocessor(files)
     shaders, in_scene = [], {name: [] for name in scenes}
     for shader in manifest["shaders"]:
         axes = {n: manifest["axes"][n] for n in manifest["axes"] if n in shader["axes"]}
         every = rules_of(manifest) + rules_of(shader)
         variants = list(oracle.legal_variants(axes, [r for r in every if applies(r, axes, manifest["axes"])]))
 
+        texts = {s: texts_of(files, preprocessor, f, STAGES[s], axes, variants, shader.get("defines", {}).items())
+                 for s, f in shader["stages"].items()}
+
         def stages(chosen):
-            if "--classes" not in sys.argv:
-                return []
-            return [{"stage": s, "classes": str(oracle.classes(files, f, STAGES[s], axes, chosen, shader.get("defines", {}).items()))}
-                    for s, f in shader["stages"].items()]
+            return [{"stage": s, "classes": str(len({texts[s][i] for i in chosen}))} for s in shader["stages"]]
 
         counts = {"name": shader["name"], "declared": str(oracle.declared(axes)), "legal": str(len(variants))}
-        shaders.append(with_stages({**counts, "needed": str(len(variants))}, stages(variants)))
+        shaders.append(with_stages({**counts, "needed": str(len(variants))}, stages(range(len(variants)))))
         for name, scene in scenes.items():
             needed = needed_by(scene, shader["name"], axes, variants)
-            chosen = [variants[i] for i in sorted(needed)]
             entry = {**counts, "needed": str(len(needed))}
-            in_scene[name].append(with_stages(entry, stages(chosen) if chosen else []))
+            in_scene[name].append(with_stages(entry, stages(needed) if needed else []))
 
     def total(entries):
         sums = {k: str(sum(int(s[k]) for s in entries)) for k in ("declared", "legal", "needed")}
-        if "--classes" in sys.argv:
-            sums["classes"] = str(sum(int(t["classes"]) for s in entries for t in s.get("stages", [])))
+        sums["classes"] = str(sum(int(t["classes"]) for s in entries for t in s.get("stages", [])))
         return sums
 
-    write(HERE / "renderer", {"manifest": "../../../manifests/renderer.yaml", "shaders": shaders, "total": total(shaders)})
+    same = write(HERE / "renderer", {"manifest": "../../../manifests/renderer.yaml", "shaders": shaders, "total": total(shaders)})
     for name, entries in in_scene.items():
-        write(HERE / name, {"manifest": "../../../manifests/renderer.yaml", "scenes": [f"../../../manifests/scenes/{name}.yaml"],
-                            "shaders": entries, "total": total(entries)})
+        same &= write(HERE / name, {"manifest": "../../../manifests/renderer.yaml", "scenes": [f"../../../manifests/scenes/{name}.yaml"],
+                                    "shaders": entries, "total": total(entries)})
+    print(f"{with_glslc} texts preprocessed by glslc as well")
+    return 4 if "--check" in sys.argv and not same else 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())
