@@ -18,7 +18,7 @@ ORDER = ["base", "runtime", "manifest", "space", "split", "reflect", "toolchain"
 # Third-party header prefix -> the files that may include it.
 THIRD_PARTY = {
     "xxhash": {"compiler/base/xxh3.cpp"},
-    "openssl/": {"compiler/base/sha256.cpp"},
+    "openssl/": {"compiler/base/sha256.cpp", "cache/server/stream_hash.cpp"},
     "gmp": {"compiler/space/count.cpp"},
     "yaml-cpp/": {"compiler/manifest/yaml.cpp"},
     "glslang/": {"compiler/toolchain/glsl.cpp"},

@@ -1,0 +1,134 @@
+#pragma once
+// What the server does, whatever the protocol: both fronts (HTTP, gRPC) turn a request into one call of this class and its
+// Answer into a response. Thread-safe; calls block on the disk.
+//
+// Promises: a blob is stored and returned only when its bytes hash to its name. An action of an instance that is not opaque
+// is a hit only when it is an ActionResult and every blob that it names is there (which renews them). A caller reads and
+// writes only what its roles allow, in the instance that it names; writes never reach a parent. The first whole value of an
+// action stays: other bytes written later are dropped and counted as a conflict, unless the instance says `replace` or the
+// caller is its admin. An action that is no hit any more (damaged, or a blob gone) may be written anew by anyone who may
+// write.
+
+#include <array>
+#include <functional>
+#include <mutex>
+#include <optional>
+
+#include "cache/server/access.h"
+#include "cache/server/answer.h"
+#include "cache/server/blob_file.h"
+#include "cache/server/counters.h"
+#include "cache/server/instances.h"
+
+namespace kiln {
+
+struct BlobName {
+    Digest digest;
+    uint64_t size = 0;
+};
+
+// What an ActionResult needs to be of use.
+struct ActionNeeds {
+    std::vector<BlobName> blobs;
+    std::vector<BlobName> trees;  // blobs that are Trees, whose files are needed as well
+};
+
+// How the service reads protocol messages without knowing protobuf; nullopt: not such a message. Without a reader every
+// action is taken as opaque.
+struct ActionReader {
+    std::function<std::optional<ActionNeeds>(ByteView)> action;
+    std::function<std::optional<std::vector<BlobName>>(ByteView)> tree;
+};
+
+struct ServiceLimits {
+    uint64_t blob = uint64_t{256} << 20;          // bytes of one blob
+    uint64_t action = uint64_t{4} << 20;          // bytes of one action record
+    uint64_t opaque_action = uint64_t{64} << 20;  // of an instance whose actions are opaque
+    uint64_t in_flight = uint64_t{512} << 20;     // bytes of request bodies held at once
+};
+
+enum class Written {
+    now,            // it was not there
+    already_there,  // with the same bytes
+    replaced,       // other bytes were there
+    kept_first,     // other bytes are there and stay
+};
+
+class Service {
+public:
+    // `store` outlives the service.
+    Service(DiskStore& store, Instances instances, ServiceLimits limits, ActionReader reader, int64_t verify_again_after = 600);
+
+    const ServiceLimits& limits() const { return limits_; }
+    const Instances& instances() const { return instances_; }
+    DiskStore& store() { return store_; }
+    Counters& counters() { return counters_; }
+    // Called for what an operator should see: conflicts, damage, failures of the disk. Set before the first request.
+    std::function<void(const Event&)> on_event;
+
+    // The instance, or unknown_instance; `role` is checked as well: forbidden for a known caller, else unauthenticated. A
+    // caller without any role in an instance is not told whether it exists.
+    Answer<Instance> enter(const Caller& caller, std::string_view instance, Role role);
+
+    // nullopt: absent.
+    Answer<std::optional<BlobFile>> blob(const Caller& caller, std::string_view instance, const Digest& key);
+    Answer<bool> has_blob(const Caller& caller, std::string_view instance, const BlobName& blob);
+    // `size`: what the client says it is, checked against the bytes.
+    Answer<Written> put_blob(const Caller& caller, std::string_view instance, const BlobName& blob, ByteView bytes);
+
+    Answer<std::optional<Bytes>> action(const Caller& caller, std::string_view instance, const Digest& key);
+    Answer<Written> put_action(const Caller& caller, std::string_view instance, const Digest& key, ByteView bytes);
+
+    // Files of the WebDAV surface: opaque, last write wins, an instance's own, under a name that only hashing ever sees.
+    Answer<std::optional<Bytes>> file(const Caller& caller, std::string_view instance, std::string_view path);
+    Answer<Written> put_file(const Caller& caller, std::string_view instance, std::string_view path, ByteView bytes);
+
+    // A share of the memory for request bodies, given back when it is destroyed.
+    class Lease {
+    public:
+        Lease() = default;
+        Lease(Lease&& other) noexcept : service_(std::exchange(other.service_, nullptr)), bytes_(other.bytes_) {}
+        Lease& operator=(Lease&& other) noexcept {
+            std::swap(service_, other.service_);
+            std::swap(bytes_, other.bytes_);
+            return *this;
+        }
+        ~Lease() {
+            if (service_ != nullptr) service_->in_flight_ -= bytes_;
+        }
+
+    private:
+        friend class Service;
+        Service* service_ = nullptr;
+        uint64_t bytes_ = 0;
+    };
+    // `busy` when there is no room for so much at present, `too_large` when there never is.
+    Answer<Lease> lease(uint64_t bytes);
+    uint64_t in_flight() const { return in_flight_; }
+
+    // A refusal that a front made by itself (a malformed request, a failed TLS handshake), counted with the others.
+    Refused refuse(std::string_view instance, const Caller& caller, Refusal why, std::string message);
+
+private:
+    struct Found {
+        std::optional<Bytes> bytes;
+        bool incomplete = false;
+    };
+    Refused failure(const Instance& instance, const Caller& caller, const Error& error);
+    Result<Found> own_action(const Instance& instance, const std::string& name, const Digest& key);
+    Result<bool> complete(ByteView action);
+    Answer<Written> store_action(const Caller& caller, const Instance& instance, const Digest& name, ByteView bytes,
+                                 const std::optional<Bytes>& there, bool replace);
+    std::mutex& stripe(const Digest& name) { return stripes_[name.bytes[0] % stripes_.size()]; }
+
+    DiskStore& store_;
+    const Instances instances_;
+    const ServiceLimits limits_;
+    const ActionReader reader_;
+    BlobReader reader_of_blobs_;
+    Counters counters_;
+    std::atomic<uint64_t> in_flight_{0};
+    std::array<std::mutex, 64> stripes_;  // one writer of an action at a time: the first is the first
+};
+
+}  // namespace kiln
