@@ -14,6 +14,7 @@
 #include <mutex>
 #include <optional>
 
+#include "cache/protocol/blob_name.h"
 #include "cache/server/access.h"
 #include "cache/server/answer.h"
 #include "cache/server/blob_file.h"
@@ -21,11 +22,6 @@
 #include "cache/server/instances.h"
 
 namespace kiln {
-
-struct BlobName {
-    Digest digest;
-    uint64_t size = 0;
-};
 
 // What an ActionResult needs to be of use.
 struct ActionNeeds {
