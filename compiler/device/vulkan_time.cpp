@@ -2,6 +2,8 @@
 // (llvmpipe is one) carries out what is recorded inside a pass tile by tile, and a timestamp there would be that of the last
 // tile. Attachments are cleared before the first timestamp, and the pass loads them.
 
+#include <algorithm>
+
 #include "compiler/device/vulkan_run.h"
 
 namespace kiln {
@@ -51,7 +53,8 @@ bool VulkanDevice::submit_timed(const Frame& frame, VkQueryPool queries, uint64_
 
 bool VulkanDevice::measure(const PipelineRequest& request, const Pipeline& pipeline, const TimeOptions& options,
                            TimedOutput& out) {
-    Frame frame{request, pipeline, request.inputs.front(), {}, {}, {}, {}, VK_NULL_HANDLE};
+    Inputs inputs = request.inputs.front();
+    Frame frame{request, pipeline, inputs, {}, {}, {}, {}, VK_NULL_HANDLE};
     VkQueryPool queries = VK_NULL_HANDLE;
     VkQueryPoolCreateInfo create{};
     create.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
@@ -63,14 +66,20 @@ bool VulkanDevice::measure(const PipelineRequest& request, const Pipeline& pipel
         bind(frame);
         good = end_and_submit();
     }
-    const uint32_t warm_ups = std::max(1u, options.warm_ups);
-    for (uint32_t i = 0; good && i < warm_ups + options.repeats; ++i) {
-        const double start = now_ms();
+    const auto submit = [&] {
         uint64_t ns = 0;
-        good = submit_timed(frame, queries, ns);
-        if (i == 0) out.first_ms = now_ms() - start;
-        if (good && i >= warm_ups) out.samples_ns.push_back(ns);
+        good = good && submit_timed(frame, queries, ns);
+        return ns;
+    };
+    const double start = now_ms();
+    if (good) submit();
+    out.first_ms = now_ms() - start;
+    for (uint32_t i = 1; good && i < options.warm_ups; ++i) submit();
+    while (good && options.enlarge) {
+        const uint64_t once = submit(), again = submit();
+        if (!good || !options.enlarge(std::min(once, again), inputs.push_constants, inputs.groups)) break;
     }
+    for (uint32_t i = 0; good && i < options.repeats; ++i) out.samples_ns.push_back(submit());
     if (good && begin(VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT)) {
         full_barrier(commands_);
         record_read(frame);

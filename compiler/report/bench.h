@@ -13,8 +13,8 @@ struct Draw {
 };
 
 struct Timed {
-    double first_ms = 0;     // of the first dispatch: the driver compiles the shader then
-    std::vector<double> ms;  // of the later ones, in order
+    double jit_ms = 0;       // what the first dispatch took beyond a later one of its size: the driver compiles the shader then
+    std::vector<double> ms;  // of the dispatches that were measured, in order
 };
 
 class Bench {

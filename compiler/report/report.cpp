@@ -266,7 +266,7 @@ Timing times_of(const Timed& member, double baseline_ns, double pixels) {
     out.p90 = ns(ms[std::min(ms.size() - 1, ms.size() * 9 / 10)]);
     out.baseline = baseline_ns;
     out.dispatch_ms = ms.front();
-    out.jit_ms = std::max(0.0, member.first_ms - ms[ms.size() / 2]);
+    out.jit_ms = member.jit_ms;
     out.repeats = static_cast<unsigned>(ms.size());
     return out;
 }

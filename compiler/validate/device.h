@@ -5,6 +5,7 @@
 // Sizes are in texels, bytes or vertices as named. All integers and floats in Bytes are little-endian, tightly packed.
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -153,6 +154,9 @@ struct PipelineOutput {
 struct TimeOptions {
     uint32_t warm_ups = 1;  // submissions that are not measured; at least one is made
     uint32_t repeats = 30;  // submissions that are
+    // When given: asked with the least of two submissions' times before any sample is kept, and again for as long as it answers
+    // true, having changed the inputs so that a dispatch does more. The pipeline stays the same one.
+    std::function<bool(uint64_t least_ns, Bytes& push_constants, std::array<uint32_t, 3>& groups)> enlarge = {};
 };
 
 // What a pipeline costs, drawn or dispatched again and again with the first of its Inputs. A sample is the time between two

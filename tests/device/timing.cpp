@@ -50,9 +50,40 @@ void main() {
     return *compute_request(*stage, {data});
 }
 
+// Enlarged twice before it is measured: one pipeline does the work of all three sizes.
+TEST(Timing, EnlargesBeforeItMeasures) {
+    const Result<StageCode> stage = compute_stage(R"(#version 450
+layout(local_size_x = 1) in;
+layout(push_constant) uniform P { uint more; };
+layout(set = 0, binding = 0) buffer Out { uint groups; uint sum; };
+void main() {
+    groups = gl_NumWorkGroups.x;
+    if (gl_GlobalInvocationID.x == 0u) sum += more;
+}
+)");
+    ASSERT_TRUE(stage.ok());
+    ComputeData data;
+    data.buffers = {{"Out", Bytes(8)}};
+    data.push_constants = Bytes{1, 0, 0, 0};
+    data.groups = {1, 1, 1};
+    TimeOptions options{2, 3, {}};
+    int asked = 0;
+    options.enlarge = [&](uint64_t least_ns, Bytes& push_constants, std::array<uint32_t, 3>& groups) {
+        EXPECT_GT(least_ns, 0u);
+        if (++asked > 2) return false;
+        push_constants[0] = static_cast<uint8_t>(asked == 1 ? 10 : 100);
+        groups[0] = asked == 1 ? 2 : 5;
+        return true;
+    };
+    const TimedOutput out = time_clean(*compute_request(*stage, {data}), options);
+    EXPECT_EQ(asked, 3);
+    // Two warm-ups and a trial of two; a trial of two; a trial of two and three samples.
+    EXPECT_EQ(values_of<uint32_t>(result_of(out.last).buffer("Out")), (std::vector<uint32_t>{5, 4 * 1 + 2 * 10 + 5 * 100}));
+}
+
 TEST(Timing, Compute) {
     const PipelineRequest request = counting();
-    const TimedOutput out = time_clean(request, {2, 7});
+    const TimedOutput out = time_clean(request, {2, 7, {}});
     const Result<PipelineOutput> once = device().run(request);
     ASSERT_TRUE(once.ok());
     const auto timed = values_of<uint32_t>(result_of(out.last).buffer("Out"));
