@@ -63,19 +63,24 @@ double hyab(const Colour& a, const Colour& b) { return std::fabs(a[0] - b[0]) + 
 
 using Plane = std::vector<double>;
 
-// taps[radius + i] times the neighbour i, along x or y; the edge pixel goes on for ever.
+// taps[radius + i] times the neighbour i, along x or y; the edge pixel goes on for ever. Whole rows at a time, so that a
+// compiler makes vectors of them.
 Plane filter(const Plane& in, uint32_t width, uint32_t height, const std::vector<double>& taps, bool along_x) {
-    const int radius = static_cast<int>(taps.size() / 2), w = static_cast<int>(width), h = static_cast<int>(height);
-    Plane out(in.size());
-    for (int y = 0; y < h; ++y)
-        for (int x = 0; x < w; ++x) {
-            double sum = 0.0;
-            for (int i = -radius; i <= radius; ++i) {
-                const int at_x = along_x ? std::clamp(x + i, 0, w - 1) : x, at_y = along_x ? y : std::clamp(y + i, 0, h - 1);
-                sum += taps[static_cast<size_t>(radius + i)] * in[static_cast<size_t>(at_y * w + at_x)];
-            }
-            out[static_cast<size_t>(y * w + x)] = sum;
+    const size_t w = width, h = height, radius = taps.size() / 2;
+    Plane out(in.size(), 0.0), padded(along_x ? w + 2 * radius : 0);
+    for (size_t y = 0; y < h; ++y) {
+        double* const row = out.data() + y * w;
+        if (along_x) {
+            const double* const from = in.data() + y * w;
+            for (size_t x = 0; x < padded.size(); ++x) padded[x] = from[x < radius ? 0 : std::min(x - radius, w - 1)];
         }
+        for (size_t i = 0; i < taps.size(); ++i) {
+            const double tap = taps[i];
+            const double* const from =
+                along_x ? padded.data() + i : in.data() + (y + i < radius ? 0 : std::min(y + i - radius, h - 1)) * w;
+            for (size_t x = 0; x < w; ++x) row[x] += tap * from[x];
+        }
+    }
     return out;
 }
 
@@ -132,10 +137,16 @@ Plane features(const Plane& in, uint32_t width, uint32_t height, double pixels_p
     return out;
 }
 
-struct Seen {
+}  // namespace
+
+struct FlipReference::Seen {
     std::vector<Colour> colour;  // Hunt-adjusted CIELAB after the eye's blur
     Plane edges, points;
 };
+
+namespace {
+
+using Seen = FlipReference::Seen;
 
 Seen look_at(const Picture& picture, double pixels_per_degree) {
     std::array<Plane, 3> planes;
@@ -168,14 +179,10 @@ double aces(double x) {  // Narkowicz's fit, with the exposure 0.6 inside
 
 double luminance_of(const Picture& p, size_t i) { return xyz_of({p.rgb[3 * i], p.rgb[3 * i + 1], p.rgb[3 * i + 2]})[1]; }
 
-}  // namespace
-
-std::vector<double> ldr_flip(const Picture& reference, const Picture& test, double pixels_per_degree) {
-    assert(reference.rgb.size() == test.rgb.size());
+std::vector<double> difference(const Seen& r, const Seen& t) {
     constexpr double qc = 0.7, pc = 0.4, pt = 0.95, qf = 0.5;
     static const double largest = std::pow(hyab(hunt_lab_of({0.0, 1.0, 0.0}), hunt_lab_of({0.0, 0.0, 1.0})), qc);
-    const Seen r = look_at(reference, pixels_per_degree), t = look_at(test, pixels_per_degree);
-    std::vector<double> out(reference.pixels());
+    std::vector<double> out(r.colour.size());
     for (size_t i = 0; i < out.size(); ++i) {
         // Most of the range for differences up to 40 % of the largest, the rest squeezed above it.
         const double power = std::pow(hyab(r.colour[i], t.colour[i]), qc);
@@ -189,6 +196,20 @@ std::vector<double> ldr_flip(const Picture& reference, const Picture& test, doub
         if (colour == 0.0 && feature < 1.0) out[i] = 0.0;
     }
     return out;
+}
+
+Picture exposed(const Picture& p, const Exposures& e, uint32_t k) {
+    const double factor = std::exp2(e.start + (e.stop - e.start) * k / (e.count - 1));
+    Picture out(p.width, p.height);
+    for (size_t i = 0; i < out.rgb.size(); ++i) out.rgb[i] = std::isfinite(p.rgb[i]) ? aces(p.rgb[i] * factor) : 0.0;
+    return out;
+}
+
+}  // namespace
+
+std::vector<double> ldr_flip(const Picture& reference, const Picture& test, double pixels_per_degree) {
+    assert(reference.rgb.size() == test.rgb.size());
+    return difference(look_at(reference, pixels_per_degree), look_at(test, pixels_per_degree));
 }
 
 Exposures flip_exposures(const Picture& reference) {
@@ -207,22 +228,28 @@ Exposures flip_exposures(const Picture& reference) {
     return out;
 }
 
-std::vector<double> hdr_flip(const Picture& reference, const Picture& test, double pixels_per_degree) {
-    const Exposures e = flip_exposures(reference);
-    std::vector<double> out(reference.pixels(), 0.0);
-    Picture r(reference.width, reference.height), t(test.width, test.height);
-    for (uint32_t k = 0; k < e.count; ++k) {
-        const double factor = std::exp2(e.start + (e.stop - e.start) * k / (e.count - 1));
-        for (size_t i = 0; i < r.rgb.size(); ++i) {
-            r.rgb[i] = aces(reference.rgb[i] * factor);
-            t.rgb[i] = std::isfinite(test.rgb[i]) ? aces(test.rgb[i] * factor) : 0.0;
-        }
-        const std::vector<double> one = ldr_flip(r, t, pixels_per_degree);
-        for (size_t i = 0; i < out.size(); ++i) out[i] = std::max(out[i], one[i]);
-    }
+FlipReference::FlipReference(const Picture& reference, const Jobs& jobs, double pixels_per_degree)
+    : exposures_(flip_exposures(reference)), pixels_per_degree_(pixels_per_degree), seen_(exposures_.count) {
+    jobs.each(seen_.size(),
+              [&](size_t k) { seen_[k] = look_at(exposed(reference, exposures_, static_cast<uint32_t>(k)), pixels_per_degree); });
+}
+FlipReference::~FlipReference() = default;
+
+std::vector<double> FlipReference::against(const Picture& test, const Jobs& jobs) const {
+    std::vector<std::vector<double>> each(seen_.size());
+    jobs.each(seen_.size(), [&](size_t k) {
+        each[k] = difference(seen_[k], look_at(exposed(test, exposures_, static_cast<uint32_t>(k)), pixels_per_degree_));
+    });
+    std::vector<double> out(test.pixels(), 0.0);
+    for (const std::vector<double>& one : each)
+        for (size_t i = 0; i < one.size(); ++i) out[i] = std::max(out[i], one[i]);
     for (size_t i = 0; i < test.rgb.size(); ++i)
         if (!std::isfinite(test.rgb[i])) out[i / 3] = 1.0;
     return out;
+}
+
+std::vector<double> hdr_flip(const Picture& reference, const Picture& test, double pixels_per_degree) {
+    return FlipReference(reference, Jobs(1), pixels_per_degree).against(test, Jobs(1));
 }
 
 double mean_of(const std::vector<double>& values) {

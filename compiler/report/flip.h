@@ -5,6 +5,7 @@
 //   HDR: Andersson, Nilsson, Shirley, Akenine-Moller, "Visualizing Errors in Rendered High Dynamic Range Images",
 //        Eurographics Short Papers, 2021: the largest LDR value over a range of exposures, which the reference decides.
 
+#include "compiler/base/jobs.h"
 #include "compiler/report/picture.h"
 
 namespace kiln::report {
@@ -24,6 +25,20 @@ Exposures flip_exposures(const Picture& reference);
 
 // One value a pixel. Not finite in the test: 1. Negative light counts as none.
 std::vector<double> hdr_flip(const Picture& reference, const Picture& test, double pixels_per_degree = flip_pixels_per_degree);
+
+// HDR-FLIP of many pictures against one, which is looked at only once.
+class FlipReference {
+public:
+    FlipReference(const Picture& reference, const Jobs& jobs, double pixels_per_degree = flip_pixels_per_degree);
+    ~FlipReference();
+    std::vector<double> against(const Picture& test, const Jobs& jobs) const;
+    struct Seen;
+
+private:
+    Exposures exposures_;
+    double pixels_per_degree_;
+    std::vector<Seen> seen_;  // an exposure each
+};
 
 double mean_of(const std::vector<double>& values);
 

@@ -77,6 +77,7 @@ void pool(FamilyReport& report) {
 struct Prepared {
     Points points;
     Reference truth;
+    std::shared_ptr<const FlipReference> flip;
 };
 
 class Runner {
@@ -105,6 +106,7 @@ public:
             out.truth.picture = std::move(picture->picture);
         }
         if (interrupted.load()) return stopped();
+        out.flip = std::make_shared<FlipReference>(out.truth.picture, effort_.jobs);
         return out;
     }
 
@@ -165,7 +167,7 @@ public:
         const Picture& x = drawn->picture;
         const Reference& truth = stage.truth;
         out.all = measure(x, truth.picture);
-        out.all.flip = mean_of(hdr_flip(truth.picture, x));
+        out.all.flip = mean_of(stage.flip->against(x, effort_.jobs));
         if (!truth.region.empty()) {
             out.region = measure(x, truth.picture, truth.region);
             std::vector<bool> rest = truth.region;

@@ -67,15 +67,14 @@ Resource image_of(const std::string& declaration, ImageData image, const Sampler
 }  // namespace
 
 uint16_t half_of(float value) {
-    const uint32_t bits = std::bit_cast<uint32_t>(value), sign = bits >> 16 & 0x8000u;
-    const double size = std::fabs(static_cast<double>(value));
-    if (std::isnan(value)) return static_cast<uint16_t>(sign | 0x7e00u);
-    if (size >= 65520.0) return static_cast<uint16_t>(sign | 0x7c00u);
-    int exponent = 0;
-    std::frexp(size, &exponent);
-    exponent = size == 0.0 ? -14 : std::max(exponent - 1, -14);
-    const uint32_t steps = static_cast<uint32_t>(std::nearbyint(std::ldexp(size, 10 - exponent)));
-    return static_cast<uint16_t>(sign | (steps < 1024u ? steps : (static_cast<uint32_t>(exponent + 15) << 10) + (steps - 1024u)));
+    const uint32_t bits = std::bit_cast<uint32_t>(value), sign = bits >> 16 & 0x8000u, size = bits & 0x7fffffffu;
+    constexpr uint32_t infinity = 0x7f800000u, least_too_large = 0x477ff000u, least_normal = 0x38800000u;  // 65520, 2^-14
+    if (size > infinity) return static_cast<uint16_t>(sign | 0x7e00u);
+    if (size >= least_too_large) return static_cast<uint16_t>(sign | 0x7c00u);
+    // Below 2^-14 steps are 2^-24, a float's between 0.5 and 1, so that the addition rounds.
+    if (size < least_normal)
+        return static_cast<uint16_t>(sign | (std::bit_cast<uint32_t>(std::bit_cast<float>(size) + 0.5f) - 0x3f000000u));
+    return static_cast<uint16_t>(sign | ((size + 0xfffu + (size >> 13 & 1u) - (112u << 23)) >> 13));
 }
 
 float float_of_half(uint16_t half) {
