@@ -13,9 +13,9 @@ using reference::pi;
 // not.
 struct Sky {
     std::string name, what, truth;
-    std::string radiance;  // body of float sky(vec3 d), without the sun
-    std::string sun;       // body of float sun(vec3 d): what is a light of its own when split off
-    double sun_half_angle = 0.0, sun_radiance = 0.0;
+    std::string radiance;                             // body of float sky(vec3 d), without the sun
+    double sun_half_angle = 0.0, sun_radiance = 0.0;  // what is a light of its own when split off
+    double lamp_half_angle = pi;                      // of the cone around `up` that light comes from most
     std::function<double(const Vec3d&)> irradiance;
     reference::ShL2<double> sh;
 };
@@ -69,6 +69,7 @@ Sky cap(int degrees) {
     s.radiance = "return dot(d, up) >= " + std::to_string(std::cos(angle)) + " ? 1.0 : 0.0;";
     s.irradiance = [angle](const Vec3d& n) { return reference::cap_irradiance(dot(up, n), angle); };
     s.sh = reference::cap_sh(up, angle);
+    s.lamp_half_angle = angle;
     return s;
 }
 Sky sunny() {
@@ -76,8 +77,7 @@ Sky sunny() {
     Sky s = linear();
     s.name = "sky_and_sun";
     s.what = "The linear sky and a sun of half-angle 0.2664 degrees, five times pi of it.";
-    s.sun = "return dot(d, up) >= 0.99998919 ? " + std::to_string(radiance) + " : 0.0;";
-    s.sun_half_angle = angle;
+    s.sun_half_angle = s.lamp_half_angle = angle;
     s.sun_radiance = radiance;
     const auto sky = s.irradiance;
     s.irradiance = [=](const Vec3d& n) { return sky(n) + radiance * reference::cap_irradiance(dot(up, n), angle); };
@@ -85,34 +85,58 @@ Sky sunny() {
     return s;
 }
 
-// Eight slices by eight equal heights, light and dark by turns. Integrals run over each patch by itself, where radiance is
-// constant.
-template <class F>
-double over_checker(int nodes, F f) {
-    double total = 0.0;
-    const int side = 8 * nodes;
-    for (int i = 0; i < side; ++i) {
-        const double z = -1.0 + 2.0 * (i + 0.5) / side, r = std::sqrt(1.0 - z * z);
-        for (int j = 0; j < side; ++j) {
-            const double phi = 2.0 * pi * (j + 0.5) / side;
-            total += (((i / nodes) + (j / nodes)) % 2 == 0 ? 2.0 : 0.1) * f(Vec3d{r * std::cos(phi), z, r * std::sin(phi)});
-        }
-    }
-    return total * 4.0 * pi / (static_cast<double>(side) * side);
+// Six patches, light and dark by turns: the upper and the lower half, each in three slices. Unlike a checker of even counts,
+// whose odd symmetry leaves nothing in the first two bands, this one has light in both. All edges are great circles.
+constexpr double patch_radiance[2] = {2.0, 0.1};
+
+Vec3d on_the_horizon(int slice) {
+    const double phi = -pi + slice * 2.0 * pi / 3.0;
+    return {std::cos(phi), 0.0, std::sin(phi)};
 }
-Sky checker(bool quick) {
+
+// Irradiance from a spherical polygon of radiance 1, cut at the receiver's horizon: Lambert's sum over its edges.
+double polygon_irradiance(const std::vector<Vec3d>& polygon, const Vec3d& n) {
+    std::vector<Vec3d> above;
+    for (size_t i = 0; i < polygon.size(); ++i) {
+        const Vec3d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+        const double at_a = dot(a, n), at_b = dot(b, n);
+        if (at_a >= 0.0) above.push_back(a);
+        if ((at_a >= 0.0) != (at_b >= 0.0)) above.push_back(normalize((a * at_b - b * at_a) * (at_a >= 0.0 ? -1.0 : 1.0)));
+    }
+    double sum = 0.0;
+    for (size_t i = 0; i < above.size(); ++i) {
+        const Vec3d c = cross(above[i], above[(i + 1) % above.size()]);
+        const double sine = length(c);
+        if (sine > 0.0) sum += std::atan2(sine, dot(above[i], above[(i + 1) % above.size()])) * dot(c, n) / sine;
+    }
+    return std::fabs(sum) / 2.0;
+}
+
+Sky checker() {
     Sky s;
     s.name = "checker";
-    s.what = "Eight slices by eight heights, radiance 2 and 0.1 by turns.";
-    s.truth = quick ? "midpoint quadrature, 16384 directions" : "midpoint quadrature, 65536 directions";
+    s.what = "Two heights of three slices, radiance 2 and 0.1 by turns.";
+    s.truth = "closed form (Lambert's polygons)";
     s.radiance =
-        "const int i = int(4.0 + 4.0 * d.y), j = int(8.0 + 4.0 / 3.14159265 * atan(d.z, d.x));\n"
-        "    return ((i + j) & 1) == 0 ? 2.0 : 0.1;";
-    s.irradiance = [nodes = quick ? 16 : 32](const Vec3d& n) {
-        return over_checker(nodes, [&](const Vec3d& d) { return std::max(dot(n, d), 0.0); });
+        "const int j = clamp(int(1.5 + 1.5 / 3.14159265 * atan(d.z, d.x)), 0, 2);\n"
+        "    return (((d.y >= 0.0 ? 1 : 0) + j) & 1) == 0 ? 2.0 : 0.1;";
+    s.irradiance = [](const Vec3d& n) {
+        double e = 0.0;
+        for (int i = 0; i < 2; ++i)
+            for (int j = 0; j < 3; ++j)
+                e += patch_radiance[(i + j) & 1] *
+                     polygon_irradiance({{0.0, i == 1 ? 1.0 : -1.0, 0.0}, on_the_horizon(j), on_the_horizon(j + 1)}, n);
+        return e;
     };
-    for (size_t k = 0; k < 9; ++k)
-        s.sh.c[k] = reference::splat3(over_checker(32, [&](const Vec3d& d) { return reference::sh_l2_basis(d)[k]; }));
+    constexpr int nodes = 300;
+    double sums[9] = {};
+    for (int i = 0; i < 2 * nodes; ++i)
+        for (int j = 0; j < 3 * nodes; ++j) {
+            const double y = -1.0 + (i + 0.5) / nodes, r = std::sqrt(1.0 - y * y), phi = -pi + (j + 0.5) * 2.0 * pi / (3 * nodes);
+            const auto basis = reference::sh_l2_basis(Vec3d{r * std::cos(phi), y, r * std::sin(phi)});
+            for (size_t k = 0; k < 9; ++k) sums[k] += patch_radiance[(i / nodes + j / nodes) & 1] * basis[k];
+        }
+    for (size_t k = 0; k < 9; ++k) s.sh.c[k] = reference::splat3(sums[k] * 4.0 * pi / (6.0 * nodes * nodes));
     return s;
 }
 
@@ -143,12 +167,17 @@ Scene scene_of(const Sky& sky, bool quick) {
     s.what = sky.what + " Normals over an unfolded octahedron.";
     s.width = s.height = quick ? 48 : 96;
     s.truth = sky.truth;
-    s.glsl = std::string(scene_text) + "float sky(vec3 d) {\n    " + sky.radiance + "\n}\nfloat sun(vec3 d) {\n    " +
-             (sky.sun.empty() ? "return 0.0;" : sky.sun) + "\n}\n";
-    char text[160];
-    std::snprintf(text, sizeof text, "const float sun_normal_irradiance = %.9g;\n",
+    // A cone by the square of a difference: the cosine of a sun's angle has lost its digits in single precision.
+    const double lamp_height = 2.0 * std::pow(std::sin(0.5 * sky.lamp_half_angle), 2);
+    char text[400];
+    std::snprintf(text, sizeof text,
+                  "const float lamp_height = %.9g, sun_height = %.9g, sun_radiance = %.9g, sun_normal_irradiance = %.9g;\n",
+                  lamp_height, 2.0 * std::pow(std::sin(0.5 * sky.sun_half_angle), 2), sky.sun_radiance,
                   sky.sun_radiance * pi * std::pow(std::sin(sky.sun_half_angle), 2));
-    s.glsl += text;
+    s.glsl =
+        std::string(scene_text) + text + "float sky(vec3 d) {\n    " + sky.radiance +
+        "\n}\nfloat sun(vec3 d) { return sun_radiance > 0.0 && dot(d - up, d - up) <= 2.0 * sun_height ? sun_radiance : 0.0; "
+        "}\n";
     s.reference = [w = s.width, h = s.height, irradiance = sky.irradiance](const Points& points, const Effort& effort) {
         return per_point(points, w, h, effort,
                          [&](size_t i) { return reference::splat3(irradiance(normalize(points.vector(i, 0)))); });
@@ -170,7 +199,7 @@ Family diffuse_family(bool quick) {
     f.primary = Metric::relmse;
     f.fields = {{"vec3", "n"}};
     f.timed_scene = 7;
-    std::vector<Sky> skies{furnace(), linear(), cap(5), cap(30), cap(60), cap(90), sunny(), checker(quick)};
+    std::vector<Sky> skies{furnace(), linear(), cap(5), cap(30), cap(60), cap(90), sunny(), checker()};
     for (const Sky& s : skies) f.scenes.push_back(scene_of(s, quick));
 
     const auto harmonics = [&](const char* name, const char* what, size_t count, const std::string& body) {
@@ -225,30 +254,48 @@ Family diffuse_family(bool quick) {
         f.members.push_back(std::move(m));
     }
 
+    const std::string frame_text =
+        "void frame(vec3 z, out vec3 x, out vec3 y) {\n"
+        "    const float side = z.z >= 0.0 ? 1.0 : -1.0, a = -1.0 / (side + z.z), b = z.x * z.y * a;\n"
+        "    x = vec3(1.0 + side * z.x * z.x * a, side * b, -side * z.x);\n    y = vec3(b, side + z.y * z.y * a, -z.y);\n}\n"
+        "vec2 place(uint seed, uint i) {\n    return vec2(fract(unit(seed) + float(i) * 0.754877666), fract(unit(hash(seed)) + "
+        "float(i) * 0.569840291));\n}\n"
+        "uint seed_of(vec3 n) { return hash(floatBitsToUint(n.x) ^ hash(floatBitsToUint(n.y) ^ hash(floatBitsToUint(n.z)))); }\n"
+        "vec3 cosine_direction(vec3 t, vec3 s, vec3 n, vec2 u) {\n    const float r = sqrt(u.x), phi = 6.28318531 * u.y;\n"
+        "    return t * (r * cos(phi)) + s * (r * sin(phi)) + n * sqrt(max(1.0 - u.x, 0.0));\n}\n";
     const auto sampled = [&](const std::string& name, const std::string& what, int count, bool split) {
         Member m;
         m.name = name;
         m.what = what;
-        m.glsl =
-            "vec3 shade(Point p) {\n"
-            "    const float side = p.n.z >= 0.0 ? 1.0 : -1.0, a = -1.0 / (side + p.n.z), b = p.n.x * p.n.y * a;\n"
-            "    const vec3 t = vec3(1.0 + side * p.n.x * p.n.x * a, side * b, -side * p.n.x);\n"
-            "    const vec3 s = vec3(b, side + p.n.y * p.n.y * a, -p.n.y);\n"
-            "    const uint seed = hash(floatBitsToUint(p.n.x) ^ hash(floatBitsToUint(p.n.y) ^ hash(floatBitsToUint(p.n.z))));\n"
-            "    float total = 0.0;\n"
-            "    for (uint i = 0u; i < " +
-            std::to_string(count) +
-            "u; ++i) {\n"
-            "        const float u = fract(unit(seed) + float(i) * 0.754877666), w = fract(unit(hash(seed)) + float(i) * "
-            "0.569840291);\n"
-            "        const float r = sqrt(u), phi = 6.28318531 * w;\n"
-            "        const vec3 d = t * (r * cos(phi)) + s * (r * sin(phi)) + p.n * sqrt(max(1.0 - u, 0.0));\n"
-            "        total += sky(d)" +
-            (split ? "" : " + sun(d)") +
-            ";\n"
-            "    }\n"
-            "    return vec3(total * (3.14159265 / " +
-            std::to_string(count) + ".0)" + (split ? " + sun_normal_irradiance * max(dot(p.n, up), 0.0)" : "") + ");\n}";
+        m.glsl = frame_text +
+                 "vec3 shade(Point p) {\n    vec3 t, s;\n    frame(p.n, t, s);\n    const uint seed = seed_of(p.n);\n"
+                 "    float total = 0.0;\n    for (uint i = 0u; i < " +
+                 std::to_string(count) +
+                 "u; ++i) {\n        const vec3 d = cosine_direction(t, s, p.n, place(seed, i));\n        total += sky(d)" +
+                 (split ? "" : " + sun(d)") + ";\n    }\n    return vec3(total * (3.14159265 / " + std::to_string(count) + ".0)" +
+                 (split ? " + sun_normal_irradiance * max(dot(p.n, up), 0.0)" : "") + ");\n}";
+        f.members.push_back(std::move(m));
+    };
+    // Half of the directions by the cosine, half evenly over the lamp's cone; the balance heuristic of Veach and Guibas 1995.
+    const auto weighed = [&](int count) {
+        Member m;
+        m.name = "mc_" + std::to_string(count) + "_mis";
+        m.what = "half of the directions cosine-weighted, half towards where the light is, weighed by the balance heuristic";
+        m.glsl = frame_text +
+                 "vec3 shade(Point p) {\n    vec3 t, s, ut, us;\n    frame(p.n, t, s);\n    frame(up, ut, us);\n"
+                 "    const uint seed = seed_of(p.n);\n    float total = 0.0;\n    for (uint i = 0u; i < " +
+                 std::to_string(count / 2) +
+                 "u; ++i) {\n        for (uint which = 0u; which < 2u; ++which) {\n"
+                 "            const vec2 u = place(which == 0u ? seed : hash(seed + 1u), i);\n"
+                 "            const float h = u.x * lamp_height, r = sqrt(h * (2.0 - h)), phi = 6.28318531 * u.y;\n"
+                 "            const vec3 d = which == 0u ? cosine_direction(t, s, p.n, u) : ut * (r * cos(phi)) + us * (r * "
+                 "sin(phi)) + up * (1.0 - h);\n"
+                 "            const float cosine = max(dot(p.n, d), 0.0);\n"
+                 "            const float density = cosine / 3.14159265 +\n"
+                 "                (dot(d - up, d - up) <= 2.0 * lamp_height ? 1.0 / (6.28318531 * lamp_height) : 0.0);\n"
+                 "            total += cosine > 0.0 ? (sky(d) + sun(d)) * cosine / density : 0.0;\n        }\n    }\n"
+                 "    return vec3(total * " +
+                 std::to_string(2.0 / count) + ");\n}";
         f.members.push_back(std::move(m));
     };
     std::vector<int> counts{1, 4, 16, 64, 256, 1024};
@@ -256,12 +303,15 @@ Family diffuse_family(bool quick) {
     for (const int n : counts)
         sampled("mc_" + std::to_string(n), "cosine-weighted directions of a rank-2 lattice, turned by the pixel", n, false);
     sampled("mc_64_split", "64 directions, the sun as a light of its own", 64, true);
+    weighed(64);
+    weighed(256);
 
     for (const char* s : {"cap_5", "cap_30", "cap_60", "sky_and_sun", "checker"})
         for (Expectation& e : ascending(Metric::relmse, {"sh_l2", "sh_l1", "ambient"}, s)) f.expectations.push_back(std::move(e));
     for (const char* s : {"cap_5", "sky_and_sun"})
         f.expectations.push_back({Metric::relmse, Relation::below, "cube_64", "sh_l2", 1.0, s, ""});
-    for (const char* m : {"ambient", "sh_l1", "sh_l1_clamped", "sh_l1_nonlinear", "sh_l2", "cube_16", "cube_64", "mc_1"})
+    for (const char* m :
+         {"ambient", "sh_l1", "sh_l1_clamped", "sh_l1_nonlinear", "sh_l2", "cube_16", "cube_64", "mc_1", "mc_64_mis"})
         f.expectations.push_back(
             {Metric::max_rel, Relation::at_most, m, "", 1e-3, "furnace", "every method is right in a furnace"});
     f.expectations.push_back(
@@ -277,6 +327,10 @@ Family diffuse_family(bool quick) {
         {Metric::relmse, Relation::below, "sh_l2", "mc_1024", 1.0, "sky_and_sun", "never passes on a sun that is not split off"});
     f.expectations.push_back(
         {Metric::relmse, Relation::below, "mc_64_split", "mc_1024", 100.0, "sky_and_sun", "split the sun off, never sample it"});
+    f.expectations.push_back(
+        {Metric::relmse, Relation::below, "mc_64_mis", "mc_1024", 100.0, "sky_and_sun", "or send half of the directions to it"});
+    for (const char* s : {"cap_5", "cap_30", "cap_60"})
+        f.expectations.push_back({Metric::relmse, Relation::below, "mc_64_mis", "mc_64", 1.0, s, "as many directions, aimed"});
     return f;
 }
 
