@@ -6,7 +6,9 @@
 
 #include "compiler/base/bytes.h"
 
+// Inline and named, for compiler/base/wire.h has classes of the same names.
 namespace kiln {
+inline namespace protobuf {
 
 class WireReader {
 public:
@@ -44,4 +46,5 @@ private:
     Bytes out_;
 };
 
+}  // namespace protobuf
 }  // namespace kiln
