@@ -224,6 +224,9 @@ TEST(ShadowFilters, SideBySide) {
                      uber_text("lib/vsm.glsl")});
     kinds.push_back({"vssm", "vssm_factor(sat, " + clip_of_p + ", 1.0, 2.0, 16.0, 2.0, 1.0 / 512.0, 0.5, 1e-6, 0.0)",
                      uber_text("lib/vsm.glsl")});
+    kinds.push_back({"vssm_mips",
+                     "vssm_factor_mips(chain, 10.0, " + clip_of_p + ", 1.0, 2.0, 16.0, 2.0, 1.0 / 512.0, 0.5, 1e-6, 0.0)",
+                     uber_text("lib/vsm.glsl")});
     for (const char* n : {"16", "32", "64"})
         kinds.push_back({std::string("pcss_") + n,
                          "pcss_factor(depth_map, shadow_map, " + clip_of_p +
@@ -248,6 +251,8 @@ TEST(ShadowFilters, SideBySide) {
         const MomentMap moments = moment_map(distance_map(s.scene, view, size), size, view.far, 0.5);
         textures.push_back(
             {"sampler2D sat", moments_image(table_by_device(floats_of(moments), size, size), size), nearest(false)});
+        textures.push_back({"sampler2D chain", moments_image(mips_by_device(floats_of(moments), size), size, 10),
+                            SamplerState{Filter::linear, MipFilter::linear, Wrap::clamp, Comparison::off}});
         for (const Kind& kind : kinds) {
             std::vector<Sampled> used;
             for (const Sampled& t : textures)
@@ -282,6 +287,11 @@ TEST(ShadowFilters, SideBySide) {
     EXPECT_LT(all["stacked"]["pcss_64"].outside, 1e-6);
     EXPECT_GT(all["stacked"]["vssm"].outside, 0.05);
     EXPECT_GT(all["stacked"]["vsm"].outside, 0.05);
+    EXPECT_GT(all["stacked"]["vssm_mips"].outside, 0.05);
+    // Trilinear texels are no box: at a corner they are worse than the table, and still better than one comparison.
+    EXPECT_GT(all["square_6"]["vssm_mips"].penumbra, all["square_6"]["vssm"].penumbra);
+    for (const char* scene : {"edge_6", "square_3", "square_6", "square_9"})
+        EXPECT_LT(all[scene]["vssm_mips"].penumbra, all[scene]["hard"].penumbra) << scene;
 }
 
 }  // namespace

@@ -87,4 +87,13 @@ std::vector<float> half_by_device(const std::vector<float>& pairs, uint32_t widt
     return pass(2, pairs, width, height, w, h, {(w + 7) / 8, (h + 7) / 8, 1});
 }
 
+std::vector<float> mips_by_device(const std::vector<float>& pairs, uint32_t size) {
+    std::vector<float> chain = pairs, level = pairs;
+    for (uint32_t side = size; side > 1; side /= 2) {
+        level = half_by_device(level, side, side);
+        chain.insert(chain.end(), level.begin(), level.end());
+    }
+    return chain;
+}
+
 }  // namespace kiln::test

@@ -22,5 +22,7 @@ std::vector<Texel> evaluate(const std::string& text, const std::string& expressi
 // A summed-area table of a square map of moments, or its mip chain, made by uber/moments.comp. Pairs, row after row.
 std::vector<float> table_by_device(const std::vector<float>& pairs, uint32_t width, uint32_t height);
 std::vector<float> half_by_device(const std::vector<float>& pairs, uint32_t width, uint32_t height);
+// A square map and all of its mips down to one texel.
+std::vector<float> mips_by_device(const std::vector<float>& pairs, uint32_t size);
 
 }  // namespace kiln::test

@@ -100,12 +100,8 @@ TEST(ShadowTables, VssmBleedsUnderTwoBlockersAsPredicted) {
 TEST(ShadowTables, MipsAverageAsTheTableDoes) {
     // At the centre of a texel of level k, a box 2^k texels wide is that texel.
     const MomentMap map = moment_map(distance_map(square_scene(6), view, size), size, view.far, middle);
-    std::vector<float> chain = floats_of(map), level = chain;
-    uint32_t mips = 1;
-    for (uint32_t side = size; side > 1; side /= 2, ++mips) {
-        level = half_by_device(level, side, side);
-        chain.insert(chain.end(), level.begin(), level.end());
-    }
+    const std::vector<float> chain = mips_by_device(floats_of(map), size);
+    constexpr uint32_t mips = 9;
     const SamplerState trilinear{Filter::linear, MipFilter::linear, Wrap::clamp, Comparison::off};
     for (uint32_t k = 0; k < mips; ++k) {
         const double width = static_cast<double>(1u << k) / size;

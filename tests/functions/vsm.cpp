@@ -1,6 +1,7 @@
 #include "uber/reference/vsm.h"
 
 #include "tests/functions/shadow_maps.h"
+#include "uber/reference/texture.h"
 
 namespace kiln::test {
 namespace {
@@ -78,6 +79,46 @@ TEST(Functions, Vsm) {
             const auto average = [&](auto centre, auto width) { return sat_average(table(centre.x), 64, centre, width); };
             return vssm_factor(average, Vec4<T>{x, y, T(16.0 / 15) * w - T(16.0 / 15), w}, size, T(1), T(16), T(2), T(1.0 / 64),
                                T(middle), T(1e-4), T(0.1));
+        },
+        number("x", linear(-6, 6)), number("y", linear(-6, 6)), number("w", linear(-1, 17).also({0, 1, 10, 16})),
+        number("size", linear(0, 2)));
+
+    // The same map as mips, unfiltered: which texel of which level is a decision, and what a filter adds is in
+    // ShadowTables.MipsAverageAsTheTableDoes.
+    std::vector<float> chain;
+    std::vector<Texture2D> levels;
+    for (int side = 64; side >= 1; side /= 2) {
+        std::vector<float> rgba;
+        const int step = 64 / side;
+        for (int y = 0; y < side; ++y)
+            for (int x = 0; x < side; ++x) {
+                Vec2<double> sum;
+                for (int j = 0; j < step; ++j)
+                    for (int i = 0; i < step; ++i) sum = sum + map.at(x * step + i, y * step + j);
+                const float m[] = {static_cast<float>(sum.x / (step * step)), static_cast<float>(sum.y / (step * step))};
+                chain.insert(chain.end(), {m[0], m[1]});
+                rgba.insert(rgba.end(), {m[0], m[1], 0, 1});
+            }
+        levels.emplace_back(side, side, rgba, false, TextureWrap::clamp);
+    }
+    const MomentMips mips(std::move(levels));
+    vsm.texture("sampler2D chain", moments_image(chain, 64, 7),
+                SamplerState{Filter::nearest, MipFilter::nearest, Wrap::clamp, Comparison::off});
+    vsm.test(
+        "mip_average(chain, centre, width, 7.0)",
+        [&mips](auto centre, auto width) {
+            using T = decltype(centre.x);
+            return mip_average(mips, 64, centre, width, T(7));
+        },
+        vector2("centre", linear(0, 1)), vector2("width", logarithmic(1e-3, 2)));
+    vsm.test(
+        "vssm_factor_mips(chain, 7.0, vec4(x, y, (16.0 / 15.0) * w - (16.0 / 15.0), w), size, 1.0, 16.0, 2.0, 1.0 / 64.0, 0.5, "
+        "1e-4, "
+        "0.1)",
+        [&mips](auto x, auto y, auto w, auto size) {
+            using T = decltype(x);
+            return vssm_factor_mips(mips, 64, T(7), Vec4<T>{x, y, T(16.0 / 15) * w - T(16.0 / 15), w}, size, T(1), T(16), T(2),
+                                    T(1.0 / 64), T(middle), T(1e-4), T(0.1));
         },
         number("x", linear(-6, 6)), number("y", linear(-6, 6)), number("w", linear(-1, 17).also({0, 1, 10, 16})),
         number("size", linear(0, 2)));

@@ -99,6 +99,22 @@ float vsm_factor(vec2 moments, float distance, float far, float reference, float
     return reduce_light_bleeding(chebyshev_upper_bound(moments, distance / far - reference, least), bleeding);
 }
 
+// Width in uv of the box that holds whatever may stand between a receiver and the light: size (dR - near) / dR on the near plane.
+// receiver: metres, [near, far]; others as below.
+float vssm_search(float receiver, float size, float near, float extent, float texel) {
+    return max(size * (receiver - near) / (receiver * extent * near), texel);
+}
+
+// Width in uv of the penumbra by the mean blocker of the search box, within [texel, search]; 0 where all of the box is lit.
+// around: the box's mean moments; t: the receiver's q.
+float vssm_penumbra(vec2 around, float t, float receiver, float size, float near, float far, float extent, float texel,
+                    float search, float reference, float least) {
+    const float lit = chebyshev_upper_bound(around, t, least);
+    const float blocker = max((vssm_blocker(around, t, lit) + reference) * far, near);
+    const float width = clamp(size * (receiver - blocker) / (blocker * extent * receiver), texel, search);
+    return lit > 0.999 ? 0.0 : width;
+}
+
 // Visible share of a square light of width `size` from a summed-area table of moments, as pcss_factor (pcss.glsl) takes it
 // from taps: mean blocker of the search box, penumbra, mean moments of the penumbra. Parameters as there and above.
 float vssm_factor(sampler2D sat, vec4 clip, float size, float near, float far, float extent, float texel, float reference,
@@ -109,15 +125,33 @@ float vssm_factor(sampler2D sat, vec4 clip, float size, float near, float far, f
     }
     const float receiver = clamp(clip.w, near, far);
     const float t = receiver / far - reference;
-    const float search = max(size * (receiver - near) / (receiver * extent * near), texel);
+    const float search = vssm_search(receiver, size, near, extent, texel);
     const vec2 around = sat_average(sat, place.xy, vec2(search));
-    const float lit_around = chebyshev_upper_bound(around, t, least);
-    if (lit_around > 0.999) {
+    const float width = vssm_penumbra(around, t, receiver, size, near, far, extent, texel, search, reference, least);
+    if (width == 0.0) {
         return 1.0;
     }
-    const float blocker = max((vssm_blocker(around, t, lit_around) + reference) * far, near);
-    const float width = clamp(size * (receiver - blocker) / (blocker * extent * receiver), texel, search);
     const vec2 mean = sat_average(sat, place.xy, vec2(width));
+    return reduce_light_bleeding(chebyshev_upper_bound(mean, t, least), bleeding);
+}
+
+// The same from a mip chain: two look-ups for the table's eight, no sums that lose digits, and a filter that is no box: its
+// shape changes with where the box lies among the level's texels. moments, levels: as mip_average takes them.
+float vssm_factor_mips(sampler2D moments, float levels, vec4 clip, float size, float near, float far, float extent, float texel,
+                       float reference, float least, float bleeding) {
+    const vec4 place = shadow_coordinates(clip);
+    if (place.w == 0.0) {
+        return 1.0;
+    }
+    const float receiver = clamp(clip.w, near, far);
+    const float t = receiver / far - reference;
+    const float search = vssm_search(receiver, size, near, extent, texel);
+    const vec2 around = mip_average(moments, place.xy, vec2(search), levels);
+    const float width = vssm_penumbra(around, t, receiver, size, near, far, extent, texel, search, reference, least);
+    if (width == 0.0) {
+        return 1.0;
+    }
+    const vec2 mean = mip_average(moments, place.xy, vec2(width), levels);
     return reduce_light_bleeding(chebyshev_upper_bound(mean, t, least), bleeding);
 }
 

@@ -78,8 +78,9 @@ T light_visibility(const SurfaceAxes& axes, const SurfaceBlocks& b, const Maps& 
     const Vec4<T> place = shadow_coordinates(clip);
     if (axes.shadow == SurfaceShadow::vsm) {
         if (!(place.w > T(0))) return T(1);
-        const T texels = max(T(b.shadow_filter) * T(maps.moments_size()), T(1));
-        const Vec2<T> moments = maps.moments(place.xy(), min(log2(texels), T(b.moments_levels - 1)));
+        const auto at = [&](const Vec2<T>& uv, const T& level) { return maps.moments(uv, level); };
+        const Vec2<T> width{T(b.shadow_filter), T(b.shadow_filter)};
+        const Vec2<T> moments = mip_average(at, maps.moments_size(), place.xy(), width, T(b.moments_levels));
         return directional ? vsm_factor(moments, place.z, T(1), reference, least, bleeding)
                            : vsm_factor(moments, clip.w, T(b.moments_far), reference, least, bleeding);
     }

@@ -63,6 +63,21 @@ T vssm_factor(const Average& average, const Vec4<T>& clip, const T& size, const 
     return reduce_light_bleeding(chebyshev_upper_bound(average(place.xy(), Vec2<T>{width, width}), t, least), bleeding);
 }
 
+// moments: callable (uv, level) -> both moments; size: of level 0, in texels.
+template <class T, class Moments>
+Vec2<T> mip_average(const Moments& moments, int size, const Vec2<T>& centre, const Vec2<T>& width, const T& levels) {
+    const T texels = max(max(width.x, width.y) * T(size), T(1));
+    return moments(centre, min(log2(texels), levels - T(1)));
+}
+template <class T, class Moments>
+T vssm_factor_mips(const Moments& moments, int moments_size, const T& levels, const Vec4<T>& clip, const T& size, const T& near,
+                   const T& far, const T& extent, const T& texel, const T& reference, const T& least, const T& bleeding) {
+    const auto average = [&](const Vec2<T>& centre, const Vec2<T>& width) {
+        return mip_average(moments, moments_size, centre, width, levels);
+    };
+    return vssm_factor(average, clip, size, near, far, extent, texel, reference, least, bleeding);
+}
+
 // Summed-area tables: texel is a callable (x, y) -> sum of all texels up to (x, y), of a size x size table.
 template <class T, class Texel>
 Vec2<T> sat_corner(const Texel& texel, int x, int y) {

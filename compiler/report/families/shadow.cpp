@@ -182,6 +182,14 @@ Family shadow_family(bool quick) {
                 return Maps{picture_map("sat", TexelFormat::rg32_float, 512, 512, {summed_moments(s, 512)},
                                         plain(Filter::nearest, MipFilter::none))};
             });
+    add("vssm_mips", "two moments from a mip chain, penumbra from the mean blocker",
+        "#include \"vsm.glsl\"\n"
+        "vec3 shade(Point p) {\n    return vec3(vssm_factor_mips(moments, 10.0, p.clip, light_size, light_near, light_far, "
+        "light_extent, 1.0 / 512.0, 0.35, 1e-8, 0.0));\n}",
+        [](size_t s) {
+            return Maps{picture_map("moments", TexelFormat::rg32_float, 512, 512, moment_mips(s, 512),
+                                    plain(Filter::linear, MipFilter::linear))};
+        });
     const auto pcss = [&](int taps, uint32_t size) {
         const std::string n = std::to_string(taps);
         add("pcss_" + n + "_" + n + (size == 512 ? "" : "_" + std::to_string(size)),
@@ -227,7 +235,7 @@ Family shadow_family(bool quick) {
     const auto expect = [&](Metric metric, const char* a, const char* b, const char* scene, const char* because) {
         f.expectations.push_back({metric, Relation::below, a, b, 1.0, scene, because});
     };
-    for (const char* soft : {"pcf_5", "vsm", "vssm", "pcss_32_32"})
+    for (const char* soft : {"pcf_5", "vsm", "vssm", "vssm_mips", "pcss_32_32"})
         expect(Metric::region_rmse, soft, "hard", "edge", "hard is worst in the penumbra");
     for (Expectation& e : ascending(Metric::rmse, {"pcf_7", "pcf_5", "pcf_3"}, "edge")) f.expectations.push_back(e);
     expect(Metric::region_rmse, "pcss_64_64", "pcf_7", "square_4", "a fixed filter is right at one distance only");
@@ -235,6 +243,7 @@ Family shadow_family(bool quick) {
     expect(Metric::rmse, "hard", "vsm", "stacked", "light bleeds between two blockers");
     expect(Metric::rmse, "hard", "vssm", "stacked", "light bleeds between two blockers");
     expect(Metric::rmse, "vssm_cut", "vssm", "stacked", "cutting the dim end");
+    expect(Metric::region_rmse, "vssm", "vssm_mips", "square_7", "trilinear texels are no box");
     for (const char* scene : {"edge", "square_4", "square_7", "square_9", "fence"})
         expect(Metric::rmse, "pcss_64_64", "vssm", scene, "PCSS at most as wrong as VSSM");
     for (Expectation& e : ascending(Metric::rmse, {"traced_64", "traced_16", "traced_4", "traced_1"}))
@@ -242,6 +251,7 @@ Family shadow_family(bool quick) {
     for (Expectation& e : ascending(Metric::time, {"hard", "pcf_3", "pcf_5", "pcf_7"})) f.expectations.push_back(e);
     for (Expectation& e : ascending(Metric::time, {"pcss_16_16", "pcss_32_32", "pcss_64_64"})) f.expectations.push_back(e);
     expect(Metric::time, "vssm", "pcss_16_16", "", "VSSM is the cheapest soft shadow");
+    expect(Metric::time, "vssm_mips", "vssm", "", "two look-ups for eight");
     return f;
 }
 
