@@ -108,6 +108,10 @@ Roles Caller::roles(std::string_view instance) const {
     return all;
 }
 
+bool Caller::may_anywhere(Role role) const {
+    return std::any_of(grants_.begin(), grants_.end(), [&](const Grant& grant) { return grant.roles.has(role); });
+}
+
 Access::Access(Roles anonymous) : anonymous_("anonymous", {{"*", anonymous}}, false) {}
 
 Access Access::open() {

@@ -59,6 +59,7 @@ public:
 
     Roles roles(std::string_view instance) const;
     bool may(Role role, std::string_view instance) const { return roles(instance).has(role); }
+    bool may_anywhere(Role role) const;
     const std::string& name() const { return name_; }  // never the token
     // False: no valid token was shown, and one might give more.
     bool known() const { return known_; }

@@ -134,6 +134,11 @@ Result<std::optional<BlobFile>> BlobReader::open(const Digest& key) {
     return std::optional(std::move(mended));
 }
 
+bool BlobReader::quick(const Digest& key) const {
+    struct stat info {};
+    return ::stat(store_.path_of(Keyspace::blob, key).c_str(), &info) != 0 || info.st_size <= off_t{1} << 20;
+}
+
 Result<bool> BlobReader::has(const Digest& key, uint64_t size) {
     static const Digest empty = sha256({});
     if (key == empty) return size == 0;

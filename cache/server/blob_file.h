@@ -16,6 +16,8 @@ public:
     uint64_t size() const { return size_; }
     // Fills `out` from `offset` on; an Error when the file has become shorter or the disk fails.
     Status read(uint64_t offset, std::span<uint8_t> out) const;
+    // The bytes where they are in memory already; empty for a blob that is read from its file.
+    ByteView memory() const { return memory_ ? ByteView(*memory_) : ByteView(); }
     // The whole of it.
     Result<Bytes> all() const;
 
@@ -39,6 +41,7 @@ public:
     Result<std::optional<BlobFile>> open(const Digest& key);
     // Whether a blob of this size is there; counts as a use. Its bytes are not verified.
     Result<bool> has(const Digest& key, uint64_t size);
+    bool quick(const Digest& key) const;
     uint64_t hashed() const { return hashed_; }
 
 private:

@@ -68,6 +68,8 @@ public:
 
     // nullopt: absent.
     Answer<std::optional<BlobFile>> blob(const Caller& caller, std::string_view instance, const Digest& key);
+    // Whether reading it takes no more than a moment: it is small, or absent. Asks nothing of a caller and counts nothing.
+    bool quick(const Digest& key) const { return reader_of_blobs_.quick(key); }
     Answer<bool> has_blob(const Caller& caller, std::string_view instance, const BlobName& blob);
     // `size`: what the client says it is, checked against the bytes.
     Answer<Written> put_blob(const Caller& caller, std::string_view instance, const BlobName& blob, ByteView bytes);
@@ -101,6 +103,7 @@ public:
     // `busy` when there is no room for so much at present, `too_large` when there never is.
     Answer<Lease> lease(uint64_t bytes);
     uint64_t in_flight() const { return in_flight_; }
+    uint64_t hashed() const { return reader_of_blobs_.hashed(); }
 
     // A refusal that a front made by itself (a malformed request, a failed TLS handshake), counted with the others.
     Refused refuse(std::string_view instance, const Caller& caller, Refusal why, std::string message);
