@@ -8,7 +8,8 @@ packages=(
   # building
   build-essential cmake ninja-build ccache pkg-config
   glslang-dev spirv-tools spirv-headers libspirv-cross-c-shared-dev
-  libyaml-cpp-dev libxxhash-dev libgmp-dev libssl-dev liblz4-dev liblmdb-dev libpng-dev libmimalloc-dev libboost-dev libzstd-dev prometheus-cpp-dev
+  libyaml-cpp-dev libxxhash-dev libgmp-dev libssl-dev liblz4-dev liblmdb-dev libpng-dev libmimalloc-dev libboost-dev libzstd-dev
+  prometheus-cpp-dev
   # running variants
   libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
   # tests and checks
