@@ -89,13 +89,40 @@ std::string digits(double value) {
     return text;
 }
 
+namespace {
+
+bool holds(const Expectation& e, double a, double b) {
+    switch (e.relation) {
+        case Relation::below:
+            return a * e.factor < b;
+        case Relation::near:
+            return a == b || std::max(a, b) <= e.factor * std::min(a, b);
+        case Relation::at_most:
+            return a <= b;
+        case Relation::at_least:
+            return a >= b;
+    }
+    return false;
+}
+
+// Whether any two values within the noises give another answer: the ends do, if any.
+bool steady(const Expectation& e, const Known& a, const Known& b) {
+    const bool here = holds(e, a.value, b.value);
+    for (const double i : {-1.0, 0.0, 1.0})
+        for (const double k : {-1.0, 0.0, 1.0})
+            if (holds(e, std::max(0.0, a.value + i * a.noise), std::max(0.0, b.value + k * b.noise)) != here) return false;
+    return true;
+}
+
+}  // namespace
+
 Judged judge(const Expectation& e,
-             const std::function<std::optional<double>(const std::string&, const std::string&, Metric)>& measured) {
+             const std::function<std::optional<Known>(const std::string&, const std::string&, Metric)>& measured) {
     Judged out;
     out.expectation = e;
     const bool one = e.relation == Relation::at_most || e.relation == Relation::at_least;
-    const std::optional<double> a = measured(e.a, e.scene, e.metric);
-    const std::optional<double> b = one ? std::optional<double>(e.factor) : measured(e.b, e.scene, e.metric);
+    const std::optional<Known> a = measured(e.a, e.scene, e.metric);
+    const std::optional<Known> b = one ? std::optional<Known>(Known{e.factor, 0.0}) : measured(e.b, e.scene, e.metric);
     std::string what = quantity(e, e.a);
     const std::string times = e.factor == 1.0 ? "" : digits(e.factor) + " times ";
     if (e.relation == Relation::below)
@@ -111,28 +138,19 @@ Judged judge(const Expectation& e,
         return out;
     }
     const bool timed = e.metric == Metric::time;
-    const double noise = timed ? std::max(time_floor, time_noise * std::max(std::fabs(*a), std::fabs(*b))) : 0.0;
-    bool holds = false;
-    switch (e.relation) {
-        case Relation::below:
-            holds = *a * e.factor < *b;
-            break;
-        case Relation::near:
-            holds = *a == *b || (std::max(*a, *b) <= e.factor * std::min(*a, *b)) || (timed && std::fabs(*a - *b) <= noise);
-            break;
-        case Relation::at_most:
-            holds = *a <= *b;
-            break;
-        case Relation::at_least:
-            holds = *a >= *b;
-            break;
-    }
-    out.verdict = holds ? Verdict::confirmed : Verdict::falsified;
     const std::string unit = timed ? " ns" : e.metric == Metric::jit ? " ms" : "";
-    std::string numbers = digits(*a) + unit + (one ? "" : " against " + digits(*b) + unit);
-    if (e.relation == Relation::below && timed && std::fabs(*a * e.factor - *b) <= noise) {
+    std::string numbers = digits(a->value) + unit + (one ? "" : " against " + digits(b->value) + unit);
+    const double time_apart = timed ? std::max(time_floor, time_noise * std::max(std::fabs(a->value), std::fabs(b->value))) : 0.0;
+    out.verdict =
+        holds(e, a->value, b->value) || (timed && e.relation == Relation::near && std::fabs(a->value - b->value) <= time_apart)
+            ? Verdict::confirmed
+            : Verdict::falsified;
+    if (timed && e.relation == Relation::below && std::fabs(a->value * e.factor - b->value) <= time_apart) {
         out.verdict = Verdict::undecided;
         numbers += ", closer than the noise of the measurement";
+    } else if (!steady(e, *a, *b)) {
+        out.verdict = Verdict::undecided;
+        numbers += ", closer than the reference's noise of " + digits(std::max(a->noise, b->noise));
     }
     out.words = what + ": " + std::string(name_of(out.verdict)) + ", " + numbers;
     return out;

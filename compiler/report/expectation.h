@@ -64,10 +64,15 @@ inline constexpr double time_noise = 0.05;
 // Nor can two times that differ by less than this many ns a pixel.
 inline constexpr double time_floor = 0.02;
 
-// `measured` gives a member's value, nothing when it was not measured.
+// A measured value, and how far it may be off because the reference is.
+struct Known {
+    double value = 0, noise = 0;
+};
+
+// `measured` gives a member's value, nothing when it was not measured. What its noise could turn round is undecided.
 Judged judge(
     const Expectation& expectation,
-    const std::function<std::optional<double>(const std::string& member, const std::string& scene, Metric metric)>& measured);
+    const std::function<std::optional<Known>(const std::string& member, const std::string& scene, Metric metric)>& measured);
 
 // Three digits: "0.0123", "1.2e-07", "inf".
 std::string digits(double value);

@@ -1,6 +1,15 @@
 #include "compiler/report/family.h"
 
+#include <cmath>
+
 namespace kiln::report {
+
+double Reference::standard_error() const {
+    double mean = 0.0, square = 0.0;
+    for (const double v : picture.rgb) mean += v / static_cast<double>(picture.rgb.size());
+    for (const double v : variance) square += v / static_cast<double>(variance.size());
+    return mean > 0.0 ? std::sqrt(square) / mean : 0.0;
+}
 
 Reference per_point(const Points& points, uint32_t width, uint32_t height, const Effort& effort,
                     const std::function<Vec3d(size_t)>& value) {

@@ -54,8 +54,9 @@ struct Effort {
 
 struct Reference {
     Picture picture;
-    double standard_error = 0.0;  // of Monte Carlo: RMS over the picture, relative to its mean; 0: none
-    std::vector<bool> region;     // a part judged by itself: a flag a pixel, or empty
+    std::vector<double> variance;   // of every number of the picture, where Monte Carlo found it; else empty
+    std::vector<bool> region;       // a part judged by itself: a flag a pixel, or empty
+    double standard_error() const;  // RMS over the picture, relative to its mean
 };
 
 struct Scene {

@@ -55,4 +55,37 @@ Metrics measure(const Picture& x, const Picture& r, const std::vector<bool>& reg
     return out;
 }
 
+Metrics noise_of(const Metrics& measured, const Picture& r, const std::vector<double>& variance,
+                 const std::vector<bool>& region) {
+    Metrics out;
+    if (variance.empty()) return out;
+    assert(variance.size() == r.rgb.size());
+    const auto counts = [&](size_t i) { return region.empty() || region[i / 3]; };
+    double mean_r = 0.0, max_r = 0.0;
+    size_t n = 0;
+    for (size_t i = 0; i < r.rgb.size(); ++i) {
+        if (!counts(i)) continue;
+        mean_r += r.rgb[i];
+        max_r = std::max(max_r, std::fabs(r.rgb[i]));
+        ++n;
+    }
+    if (n == 0) return out;
+    mean_r /= static_cast<double>(n);
+    double squares = 0.0, relative = 0.0;
+    for (size_t i = 0; i < r.rgb.size(); ++i) {
+        if (!counts(i)) continue;
+        const double deviation = std::sqrt(variance[i]);
+        squares += variance[i];
+        relative += ratio(variance[i], r.rgb[i] * r.rgb[i] + 0.01 * mean_r * mean_r);
+        out.max_rel = std::max(out.max_rel, ratio(3.0 * deviation, std::max(std::fabs(r.rgb[i]), 1e-3 * max_r)));
+        out.max_abs = std::max(out.max_abs, 3.0 * deviation);
+    }
+    // Roots of means of squares are norms: the triangle's inequality.
+    out.rmse = std::sqrt(squares / static_cast<double>(n));
+    relative /= static_cast<double>(n);
+    out.relmse = 2.0 * std::sqrt(relative * measured.relmse) + relative;
+    out.bias = ratio(out.rmse, std::fabs(mean_r));
+    return out;
+}
+
 }  // namespace kiln::report

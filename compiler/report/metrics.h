@@ -23,4 +23,10 @@ struct Metrics {
 // x and r have one size. `region`: empty, or a flag a pixel; only flagged pixels count.
 Metrics measure(const Picture& x, const Picture& r, const std::vector<bool>& region = {});
 
+// How far those numbers may be off because r itself is only known with this variance, a number each (or empty: exact): what
+// one standard deviation everywhere, in the worst direction, does to RMSE, relMSE and bias, and three of the worst number's to
+// maxRel and maxAbs. Nothing is said of FLIP.
+Metrics noise_of(const Metrics& measured, const Picture& r, const std::vector<double>& variance,
+                 const std::vector<bool>& region = {});
+
 }  // namespace kiln::report

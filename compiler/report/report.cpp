@@ -52,6 +52,9 @@ void pool(FamilyReport& report) {
         out.all = pooled(report.scenes, i, &Measured::all);
         out.region = pooled(report.scenes, i, &Measured::region);
         out.rest = pooled(report.scenes, i, &Measured::rest);
+        out.all_noise = pooled(report.scenes, i, &Measured::all_noise);
+        out.region_noise = pooled(report.scenes, i, &Measured::region_noise);
+        out.rest_noise = pooled(report.scenes, i, &Measured::rest_noise);
         if (!report.family.time_every_scene) out.timing = report.scenes[report.family.timed_scene][i].timing;
         for (const std::vector<Measured>& scene : report.scenes) {
             const Measured& m = scene[i];
@@ -168,11 +171,14 @@ public:
         const Reference& truth = stage.truth;
         out.all = measure(x, truth.picture);
         out.all.flip = mean_of(stage.flip->against(x, effort_.jobs));
+        out.all_noise = noise_of(out.all, truth.picture, truth.variance);
         if (!truth.region.empty()) {
             out.region = measure(x, truth.picture, truth.region);
+            out.region_noise = noise_of(out.region, truth.picture, truth.variance, truth.region);
             std::vector<bool> rest = truth.region;
             rest.flip();
             out.rest = measure(x, truth.picture, rest);
+            out.rest_noise = noise_of(out.rest, truth.picture, truth.variance, rest);
         }
         auto picture = shown(x, truth.picture);
         KILN_TRY(picture);
@@ -257,6 +263,27 @@ double Measured::value(Metric metric) const {
     return 0.0;
 }
 
+double Measured::noise(Metric metric) const {
+    switch (metric) {
+        case Metric::relmse:
+            return all_noise.relmse;
+        case Metric::rmse:
+            return all_noise.rmse;
+        case Metric::max_rel:
+            return all_noise.max_rel;
+        case Metric::max_abs:
+            return all_noise.max_abs;
+        case Metric::bias:
+            return all_noise.bias;
+        case Metric::region_rmse:
+            return region_noise.rmse;
+        case Metric::rest_rmse:
+            return rest_noise.rmse;
+        default:
+            return 0.0;
+    }
+}
+
 Timing times_of(const Timed& member, double baseline_ns, double pixels) {
     Timing out;
     std::vector<double> ms = member.ms;
@@ -314,7 +341,7 @@ Result<Report> run_report(const ReportOptions& options, Library& library, Toolch
             auto png = shown(stage->truth.picture, stage->truth.picture);
             KILN_TRY(png);
             report.references.push_back(std::move(*png));
-            report.standard_errors.push_back(stage->truth.standard_error);
+            report.standard_errors.push_back(stage->truth.standard_error());
             const bool timed = s == family.timed_scene || !options.quick || family.time_every_scene;
             Result<double> baseline = 0.0;
             if (timed) baseline = runner.baseline(family, scene);
@@ -336,12 +363,13 @@ Result<Report> run_report(const ReportOptions& options, Library& library, Toolch
         pool(report);
         for (const Expectation& e : report.family.expectations)
             report.judged.push_back(
-                judge(e, [&](const std::string& member, const std::string& scene, Metric metric) -> std::optional<double> {
+                judge(e, [&](const std::string& member, const std::string& scene, Metric metric) -> std::optional<Known> {
                     for (size_t i = 0; i < report.family.members.size(); ++i) {
                         if (report.family.members[i].name != member) continue;
-                        if (scene.empty()) return report.together[i].value(metric);
+                        const auto known = [&](const Measured& m) { return Known{m.value(metric), m.noise(metric)}; };
+                        if (scene.empty()) return known(report.together[i]);
                         for (size_t s = 0; s < report.family.scenes.size(); ++s)
-                            if (report.family.scenes[s].name == scene) return report.scenes[s][i].value(metric);
+                            if (report.family.scenes[s].name == scene) return known(report.scenes[s][i]);
                     }
                     return std::nullopt;
                 }));

@@ -54,4 +54,25 @@ inline std::array<Estimate, 3> gi_irradiance(const std::vector<GiQuad<double>>& 
     return {samples[0].estimate(), samples[1].estimate(), samples[2].estimate()};
 }
 
+// The same by first directions of a Fibonacci lattice, moved at random `shifts` times: the directions of one lattice lie evenly,
+// so that the error falls with nearly the first power of their number, and the shifts are independent and tell what it is.
+inline std::array<Estimate, 3> gi_irradiance_lattice(const std::vector<GiQuad<double>>& quads, const GiLamp<double>& lamp,
+                                                     const Vec3<double>& x, const Vec3<double>& n, int bounces, int shifts,
+                                                     uint64_t seed) {
+    constexpr int count = 4181, generator = 2584;  // F(19), F(18)
+    Random random(seed);
+    std::array<Samples, 3> samples;
+    for (int s = 0; s < shifts; ++s) {
+        const double a = random(), b = random();
+        Vec3<double> sum{};
+        for (int i = 0; i < count; ++i) {
+            const double u = (i + 0.5) / count + a, v = static_cast<double>(i) * generator / count + b;
+            const Vec3<double> direction = gi_cosine_direction<double>({u - std::floor(u), v - std::floor(v)}, n);
+            sum = sum + gi_path(quads, lamp, x, direction, bounces, [&] { return random(); });
+        }
+        samples[0].add(pi * sum.x / count), samples[1].add(pi * sum.y / count), samples[2].add(pi * sum.z / count);
+    }
+    return {samples[0].estimate(), samples[1].estimate(), samples[2].estimate()};
+}
+
 }  // namespace kiln::reference

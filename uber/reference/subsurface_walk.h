@@ -4,6 +4,8 @@
 // normal, and gathers the irradiance where it comes out: the exitance over the irradiance with light that enters diffusely.
 // Also Chandrasekhar's closed form for the half space, which the walk is held against.
 
+#include <vector>
+
 #include "uber/reference/random.h"
 
 namespace kiln::reference {
@@ -79,6 +81,71 @@ Estimate subsurface_sphere(const Medium& medium, double radius, const Vec3<doubl
         samples.add(subsurface_walk(random, medium, n * radius, direction, inside_for, irradiance));
     }
     return samples.estimate();
+}
+
+// For a walk that ends as far as `distance` from where it began on a plane, in any direction alike: the share of directions
+// whose end lies at x + distance cos > 0.
+inline double share_beyond_an_edge(double x, double distance) {
+    return x >= distance ? 1.0 : x <= -distance ? 0.0 : 1.0 - std::acos(x / distance) / pi;
+}
+
+// The mean over phi of max(0, a + b cos phi), b >= 0.
+inline double mean_clamped_cosine(double a, double b) {
+    if (a >= b) return a;
+    if (a <= -b) return 0.0;
+    const double end = std::acos(-a / b);
+    return (a * end + b * std::sin(end)) / pi;
+}
+
+// Many receivers from the same walks, since all begin alike, and every end stands for its whole circle: at x before or beyond
+// the edge of the light on a half space (x > 0 is lit) ...
+inline std::vector<Estimate> subsurface_edge(const Medium& medium, const std::vector<double>& x, int walks, uint64_t seed) {
+    Random random(seed);
+    std::vector<Samples> samples(x.size());
+    const auto inside_for = [](const Vec3<double>& p, const Vec3<double>& d) {
+        return d.z > 0 ? -p.z / d.z : std::numeric_limits<double>::infinity();
+    };
+    for (int i = 0; i < walks; ++i) {
+        Vec3<double> exit{};
+        const Vec3<double> direction = random_cosine(random, {0, 0, -1});
+        const double weight = subsurface_walk(random, medium, {0, 0, 0}, direction, inside_for, [&](const Vec3<double>& at) {
+            exit = at;
+            return 1.0;
+        });
+        const double distance = std::hypot(exit.x, exit.y);
+        for (std::size_t k = 0; k < x.size(); ++k)
+            samples[k].add(weight == 0 ? 0 : weight * share_beyond_an_edge(x[k], distance));
+    }
+    std::vector<Estimate> out;
+    for (const Samples& s : samples) out.push_back(s.estimate());
+    return out;
+}
+
+// ... and at these cosines from the pole of a sphere that parallel light shines on.
+inline std::vector<Estimate> subsurface_terminator(const Medium& medium, double radius, const std::vector<double>& cosines,
+                                                   int walks, uint64_t seed) {
+    Random random(seed);
+    std::vector<Samples> samples(cosines.size());
+    const auto inside_for = [&](const Vec3<double>& p, const Vec3<double>& d) {
+        const double b = dot(p, d), c = dot(p, p) - radius * radius;
+        return -b + std::sqrt(std::fmax(b * b - c, 0.0));
+    };
+    for (int i = 0; i < walks; ++i) {
+        double cosine = 1;
+        const Vec3<double> direction = random_cosine(random, {0, 0, -1});
+        const double weight = subsurface_walk(random, medium, {0, 0, radius}, direction, inside_for, [&](const Vec3<double>& at) {
+            cosine = std::fmin(std::fmax(at.z / radius, -1.0), 1.0);
+            return 1.0;
+        });
+        const double sine = std::sqrt(1 - cosine * cosine);
+        for (std::size_t k = 0; k < cosines.size(); ++k)
+            samples[k].add(
+                weight == 0 ? 0
+                            : weight * mean_clamped_cosine(cosine * cosines[k], sine * std::sqrt(1 - cosines[k] * cosines[k])));
+    }
+    std::vector<Estimate> out;
+    for (const Samples& s : samples) out.push_back(s.estimate());
+    return out;
 }
 
 // Chandrasekhar's H for isotropic scattering, mu in [0, 1], albedo in [0, 1):

@@ -114,11 +114,45 @@ Point point_at(vec2 u) {
         };
         f.scenes.push_back(std::move(s));
     }
+    {
+        Scene s;
+        s.name = "seams";
+        s.what =
+            "1 less how much the light of a point changes where one cascade takes over from the next: points on the ends of "
+            "slices, one after the other from bottom to top, forty metres wide. RMSE squared is the share of a seam that jumps; "
+            "with one "
+            "cascade there is none.";
+        s.width = s.height = quick ? 96 : 192;
+        s.glsl = R"(
+Point point_at(vec2 u) {
+    Point p;
+    p.position = vec3(u.x * 40.0 - 20.0, 0.0, 0.0);
+    p.depth = 1.0 - u.y;
+    return p;
+}
+)";
+        s.truth = "light has no seams: 1 everywhere";
+        s.reference = [w = s.width, h = s.height](const Points& points, const Effort& effort) {
+            return per_point(points, w, h, effort, [](size_t) { return reference::splat3(1.0); });
+        };
+        f.scenes.push_back(std::move(s));
+    }
     const auto add = [&](const Choice& choice, const std::string& name, const std::string& what, const std::string& call) {
         Member m;
         m.name = name;
         m.what = what;
-        m.glsl = "#include \"cascades.glsl\"\n#include \"lecture_shadow.glsl\"\n" + call;
+        // A step of a few units in the last place either way, and no other difference.
+        const std::string seams = choice.count == 1
+                                      ? "vec3 shade(Point p) { return vec3(1.0); }"
+                                      : "vec3 shade(Point p) {\n    const float end = ends[int(p.depth * " +
+                                            std::to_string(choice.count - 1) +
+                                            ".0)];\n    const vec3 at = vec3(p.position.xy, -end);\n"
+                                            "    return 1.0 - abs(light(at, end * 0.999999) - light(at, end * 1.000001));\n}";
+        for (const Scene& s : f.scenes)
+            m.scene_glsl[s.name] =
+                "#include \"cascades.glsl\"\n#include \"lecture_shadow.glsl\"\nvec3 light(vec3 position, float "
+                "depth) {\n" +
+                call + "}\n" + (s.name == "seams" ? seams : "vec3 shade(Point p) { return light(p.position, p.depth); }");
         // The maps are the same in every scene.
         const auto made = std::make_shared<std::vector<Resource>>();
         m.resources = [choice, made](size_t, Bench&, const Effort&) -> Result<std::vector<Resource>> {
@@ -151,15 +185,14 @@ Point point_at(vec2 u) {
     for (const Choice& c : choices()) {
         const std::string n = std::to_string(c.count);
         add(c, c.name, n + " cascades, lambda " + digits(c.lambda) + ", blend " + digits(100.0 * c.band) + " %",
-            "vec3 shade(Point p) {\n    const CascadeChoice choice = choose_cascade(p.depth, 2.0, ends, " + n + ", " +
-                std::to_string(c.band) +
+            "    const CascadeChoice choice = choose_cascade(depth, 2.0, ends, " + n + ", " + std::to_string(c.band) +
                 ");\n"
-                "    return vec3(cascaded_shadow(maps, clip_of_world, bias, p.position, choice));\n}");
+                "    return vec3(cascaded_shadow(maps, clip_of_world, bias, position, choice));\n");
     }
     add(choices()[3], "four_lecture", "the lecture's steps: all four sampled, one kept, no bias",
-        "vec3 shade(Point p) {\n    mat4 matrices[4] = mat4[4](clip_of_world[0], clip_of_world[1], clip_of_world[2], "
+        "    mat4 matrices[4] = mat4[4](clip_of_world[0], clip_of_world[1], clip_of_world[2], "
         "clip_of_world[3]);\n"
-        "    return vec3(cascaded_shadow_lecture(maps, matrices, p.position, 4, max(cascade_index(p.depth, ends, 4), 0)));\n}");
+        "    return vec3(cascaded_shadow_lecture(maps, matrices, position, 4, max(cascade_index(depth, ends, 4), 0)));\n");
 
     for (const Expectation& e : ascending(Metric::rmse, {"four", "three", "two", "one"}, "whole")) f.expectations.push_back(e);
     f.expectations.push_back(
@@ -171,6 +204,13 @@ Point point_at(vec2 u) {
     f.expectations.push_back({Metric::time, Relation::below, "four", "four_lecture", 2.0, "whole", "four look-ups for one"});
     f.expectations.push_back(
         {Metric::time, Relation::near, "four_blend_10", "four", 1.15, "whole", "at most the band's share of a look-up"});
+    for (const char* m : {"four_blend_5", "four_blend_10"})
+        f.expectations.push_back(
+            {Metric::max_abs, Relation::at_most, m, "", 1e-3, "seams", "a blend is over where the slice ends"});
+    f.expectations.push_back(
+        {Metric::rmse, Relation::at_least, "four", "", 0.05, "seams", "without one edges jump by a texel of the coarser map"});
+    f.expectations.push_back(
+        {Metric::rmse, Relation::below, "four", "two", 1.0, "seams", "and by less, the closer the maps' texels are in size"});
     f.expectations.push_back(
         {Metric::rmse, Relation::below, "four", "four_lecture", 1.0, "whole", "no bias shadows the ground itself"});
     return f;

@@ -17,6 +17,10 @@ const char* const point_text = R"(
 Point point_at(vec2 u) {
     Point p;
     const vec2 q = u * 1.9 - 0.95;
+    if (GI_SCENE == 2) {
+        p.position = vec3(q.x * 0.5, -0.5, q.y * 0.5);
+        return p;
+    }
     const bool low = q.x > 0.05 && q.x < 0.65 && q.y > 0.05 && q.y < 0.65;
     const bool tall = q.x > -0.7 && q.x < -0.1 && q.y > -0.6 && q.y < 0.0;
     p.position = vec3(q.x, GI_SCENE != 0 ? -1.0 : low ? -0.4 : tall ? 0.2 : -1.0, q.y);
@@ -28,29 +32,35 @@ const vec3 up = vec3(0.0, 1.0, 0.0);
 
 const char* const room_text = "#include \"gi_cornell.glsl\"\n#include \"gi_path.glsl\"\n";
 
+// As point_at has it in the first room.
+double height_of(double x, double z) {
+    const bool low = x > 0.05 && x < 0.65 && z > 0.05 && z<0.65, tall = x> - 0.7 && x < -0.1 && z > -0.6 && z < 0.0;
+    return low ? -0.4 : tall ? 0.2 : -1.0;
+}
+
 Scene scene_of(bool quick, int number, const std::string& name, const std::string& what) {
     Scene s;
     s.name = name;
     s.what = what;
     s.width = s.height = quick ? 12 : 24;
     s.glsl = "#define GI_SCENE " + std::to_string(number) + "\n" + point_text;
-    const int paths = quick ? 4000 : 20000;
-    s.truth =
-        number == 1 ? "closed form: pi (1 + albedo)" : std::to_string(paths) + " independent paths a point in double precision";
-    s.reference = [number, paths, w = s.width, h = s.height](const Points& points, const Effort& effort) {
+    const int shifts = quick ? 20 : 64;
+    const char* const closed[] = {"", "closed form: pi (1 + albedo)", "closed form (Lambert's polygon)"};
+    s.truth = number == 0 ? std::to_string(shifts) + " lattices of 4181 directions, shifted at random, in double precision"
+                          : closed[number];
+    s.reference = [number, shifts, w = s.width, h = s.height](const Points& points, const Effort& effort) {
         const auto quads = reference::gi_cornell_quads();
-        const auto lamp = reference::gi_cornell_lamp();
-        std::vector<double> squares(points.count(), 0.0);
+        const auto plate = reference::gi_plate_quads()[1];
+        std::vector<double> variance(number == 0 ? 3 * points.count() : 0);
         Reference out = per_point(points, w, h, effort, [&](size_t i) {
             if (number == 1) return reference::splat3(reference::pi * 1.5);
-            const auto e = reference::gi_irradiance(quads, lamp, points.vector(i, 0), {0, 1, 0}, 1, paths, i + 1);
-            for (const auto& channel : e) squares[i] += channel.standard_error * channel.standard_error / 3.0;
+            if (number == 2) return reference::splat3(reference::polygon_irradiance(points.vector(i, 0), {0, 1, 0}, plate));
+            const auto e = reference::gi_irradiance_lattice(quads, reference::gi_cornell_lamp(), points.vector(i, 0), {0, 1, 0},
+                                                            1, shifts, i + 1);
+            for (size_t c = 0; c < 3; ++c) variance[3 * i + c] = e[c].standard_error * e[c].standard_error;
             return Vec3d{e[0].mean, e[1].mean, e[2].mean};
         });
-        double mean = 0.0, square = 0.0;
-        for (const double v : out.picture.rgb) mean += v / static_cast<double>(out.picture.rgb.size());
-        for (const double v : squares) square += v / static_cast<double>(squares.size());
-        if (mean > 0.0) out.standard_error = std::sqrt(square) / mean;
+        out.variance = std::move(variance);
         return out;
     };
     return s;
@@ -95,11 +105,12 @@ Family indirect_family(bool quick) {
     f.what =
         "Irradiance after one reflection on the floor of a room of two metres. Maps and volumes are made ready before the clock "
         "starts. "
-        "In the furnace, whose walls shine by themselves, forms that know only the lamp see nothing.";
+        "In the furnace and between the plates, whose walls shine by themselves, forms that know only the lamp see nothing.";
     f.primary = Metric::relmse;
     f.fields = {{"vec3", "position"}};
     f.scenes = {scene_of(quick, 0, "cornell", "A box with two blocks and a lamp under the ceiling."),
-                scene_of(quick, 1, "furnace", "A closed box of emission 1 and albedo 1/2.")};
+                scene_of(quick, 1, "furnace", "A closed box of emission 1 and albedo 1/2."),
+                scene_of(quick, 2, "plates", "A black plate of one metre and, one metre above it, one that shines by itself.")};
 
     using Resources = Result<std::vector<Resource>>;
     const auto add = [&](const std::string& name, const std::string& what, const std::string& glsl,
@@ -114,11 +125,13 @@ Family indirect_family(bool quick) {
     add("none", "no indirect light", "vec3 shade(Point p) { return vec3(0.0); }");
     add("ambient", "one colour: the mean of some points", "vec3 shade(Point p) { return ambient.rgb; }",
         [](size_t scene, Bench&, const Effort&) -> Resources {
-            Vec3d sum = reference::splat3(scene == 0 ? 0.0 : reference::pi * 1.5);
+            const double mean[] = {0.0, reference::pi * 1.5, reference::pi * reference::form_factor_parallel(1, 1, 1)};
+            Vec3d sum = reference::splat3(mean[scene]);
             for (int i = 0; i < 16 && scene == 0; ++i) {
-                const auto e = reference::gi_irradiance(reference::gi_cornell_quads(), reference::gi_cornell_lamp(),
-                                                        {-0.9 + 0.6 * (i % 4), -1.0, -0.9 + 0.6 * (i / 4)}, {0, 1, 0}, 1, 1000,
-                                                        77 + static_cast<uint64_t>(i));
+                const double x = -0.7125 + 0.475 * (i % 4), z = -0.7125 + 0.475 * (i / 4);
+                const auto e =
+                    reference::gi_irradiance_lattice(reference::gi_cornell_quads(), reference::gi_cornell_lamp(),
+                                                     {x, height_of(x, z), z}, {0, 1, 0}, 1, 1, 77 + static_cast<uint64_t>(i));
                 sum = sum + Vec3d{e[0].mean, e[1].mean, e[2].mean} * (1.0 / 16.0);
             }
             return std::vector<Resource>{
@@ -213,7 +226,7 @@ Family indirect_family(bool quick) {
             "#define SDF_CONES " + std::to_string(cones) +
                 "\n#include \"gi_sdf.glsl\"\n"
                 "vec3 shade(Point p) {\n    uint state = seed_of(p);\n"
-                "    return sdf_gather(field, volume, SdfVolume(vec3(-1.0), vec3(2.0)), p.position, up, 3.5, 1.0 / 32.0, 2.0 / "
+                "    return sdf_gather(field, volume, SdfVolume(vec3(-1.0), vec3(2.0)), p.position, up, 3.5, 2.0 / 32.0, 2.0 / "
                 "32.0, state).rgb;\n}",
             [](size_t scene, Bench& bench, const Effort&) -> Resources {
                 auto mips = radiance_mips(bench, scene);
@@ -239,7 +252,9 @@ Family indirect_family(bool quick) {
                 "    const GiLamp lamp = GiLamp(vec3(0.0, 0.9, 0.0), vec3(0.0, -1.0, 0.0), vec3(quads[0].y));\n"
                 "    return gi_path_irradiance(lamp, p.position, up, 1, state);\n}",
             [](size_t scene, Bench&, const Effort&) -> Resources {
-                const auto quads = scene == 0 ? reference::gi_cornell_quads() : reference::gi_furnace_quads();
+                const auto quads = scene == 0   ? reference::gi_cornell_quads()
+                                   : scene == 1 ? reference::gi_furnace_quads()
+                                                : reference::gi_plate_quads();
                 std::vector<float> v{static_cast<float>(quads.size()), scene == 0 ? 1.0f : 0.0f, 0.0f, 0.0f};
                 for (const auto& q : quads)
                     for (const Vec3d& x : {q.origin, q.u, q.v, q.albedo, q.emission})
@@ -258,7 +273,14 @@ Family indirect_family(bool quick) {
                               "what is off the screen stays off, however many rays"});
     for (const Expectation& e : ascending(Metric::rmse, {"paths_16", "paths_4"}, "cornell")) f.expectations.push_back(e);
     f.expectations.push_back({Metric::max_rel, Relation::at_most, "paths_4", "", 1e-4, "furnace", "every path carries the same"});
-    f.expectations.push_back({Metric::bias, Relation::at_most, "voxel_cones", "", 0.5, "furnace", "the furnace's residual"});
+    f.expectations.push_back({Metric::bias, Relation::at_most, "voxel_cones", "", 0.5, "furnace",
+                              "the furnace's residual, a third of it light of walls on walls, which the volume does not hold"});
+    f.expectations.push_back(
+        {Metric::bias, Relation::at_most, "paths_16", "", 0.05, "plates", "the form factor 0.1998 of two plates"});
+    for (const char* m : {"voxel_cones", "sdf_cones_64"})
+        f.expectations.push_back({Metric::bias, Relation::at_most, m, "", 0.25, "plates", "what cones make of it"});
+    f.expectations.push_back(
+        {Metric::bias, Relation::at_least, "screen_64", "", 0.5, "plates", "the screen has the lamp edge-on, and misses it"});
     for (const Expectation& e : ascending(Metric::time, {"ambient", "rsm_64", "rsm_256", "rsm_1024"}, "cornell"))
         f.expectations.push_back(e);
     return f;

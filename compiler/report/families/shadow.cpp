@@ -250,6 +250,7 @@ Family shadow_family(bool quick) {
         f.expectations.push_back(e);
     for (Expectation& e : ascending(Metric::time, {"hard", "pcf_3", "pcf_5", "pcf_7"})) f.expectations.push_back(e);
     for (Expectation& e : ascending(Metric::time, {"pcss_16_16", "pcss_32_32", "pcss_64_64"})) f.expectations.push_back(e);
+    expect(Metric::region_rmse, "vssm", "vssm_mips", "square_4", "a box where the light is square, not a blend of levels");
     expect(Metric::time, "vssm", "pcss_16_16", "", "VSSM is the cheapest soft shadow");
     expect(Metric::time, "vssm_mips", "vssm", "", "two look-ups for eight");
     return f;

@@ -43,33 +43,27 @@ Scene scene_of(const Setting& setting, bool quick) {
     char text[160];
     std::snprintf(text, sizeof text, "const float albedo = %.9g, radius = %.9g;\n", setting.albedo, setting.radius);
     s.glsl = std::string(text) + point_text;
-    const int walks = quick ? 3000 : 100000;
-    s.truth = std::to_string(4 * walks) + " random walks a column in double precision";
+    constexpr int batches = 32;
+    const int walks = quick ? 24000 : 250000;
+    s.truth = std::to_string(batches * walks) + " random walks in double precision, of which every column has its own view";
     s.reference = [setting, walks, w = s.width, h = s.height](const Points& points, const Effort& effort) {
         const reference::Medium medium{reference::single_scattering_albedo(reference::splat3(setting.albedo)).x, 1.0};
-        std::vector<double> squares(points.count(), 0.0);
-        Reference out = per_point(points, w, h, effort, [&](size_t i) {
-            const double x = points.scalar(i, 0);
-            const auto e =
-                setting.radius > 0.0
-                    ? reference::subsurface_sphere(medium, setting.radius, {std::sqrt(1.0 - x * x), 0.0, x}, walks, i + 1,
-                                                   [&](const Vec3d& at) { return std::max(at.z / setting.radius, 0.0); })
-                    : reference::subsurface_half_space(medium, x, walks, i + 1,
-                                                       [](const Vec3d& at) { return at.x > 0.0 ? 1.0 : 0.0; });
-            squares[i] = e.standard_error * e.standard_error;
-            return reference::splat3(e.mean);
+        std::vector<double> columns;
+        for (size_t x = 0; x < w; ++x) columns.push_back(points.scalar(x, 0));
+        std::vector<std::vector<reference::Estimate>> parts(batches);
+        effort.jobs.each(batches, [&](size_t b) {
+            parts[b] = setting.radius > 0.0 ? reference::subsurface_terminator(medium, setting.radius, columns, walks, b + 1)
+                                            : reference::subsurface_edge(medium, columns, walks, b + 1);
         });
-        // The rows of a column ask the same: their mean is the column's.
-        double mean = 0.0, square = 0.0;
-        for (size_t x = 0; x < w; ++x) {
-            double column = 0.0;
-            for (size_t y = 0; y < h; ++y) column += out.picture.rgb[3 * (y * w + x)] / static_cast<double>(h);
-            for (size_t y = 0; y < h; ++y)
-                for (size_t c = 0; c < 3; ++c) out.picture.rgb[3 * (y * w + x) + c] = column;
-            mean += column / static_cast<double>(w);
-        }
-        for (const double v : squares) square += v / static_cast<double>(squares.size());
-        if (mean > 0.0) out.standard_error = std::sqrt(square / h) / mean;
+        Reference out;
+        out.picture = Picture(w, h);
+        out.variance.resize(out.picture.rgb.size());
+        for (const auto& part : parts)
+            for (size_t i = 0; i < out.picture.rgb.size() && !part.empty(); ++i) {
+                const reference::Estimate& e = part[i / 3 % w];
+                out.picture.rgb[i] += e.mean / batches;
+                out.variance[i] += e.standard_error * e.standard_error / (batches * batches);
+            }
         return out;
     };
     return s;

@@ -81,6 +81,19 @@ TEST(GiTruth, CornellBoxIsClosedButForItsFrontAndTracesAlikeWithBothGenerators) 
     }
 }
 
+TEST(GiTruth, LatticesAgreeWithIndependentPathsAndKnowMore) {
+    const Vec3<double> n{0, 1, 0};
+    for (const Vec3<double>& x : {Vec3<double>{0.8, -1, 0.8}, Vec3<double>{-0.3, 0.2, -0.3}, Vec3<double>{0.02, -1, 0.3}}) {
+        const auto paths = gi_irradiance(gi_cornell_quads(), gi_cornell_lamp(), x, n, 1, 16724, 8);
+        const auto lattice = gi_irradiance_lattice(gi_cornell_quads(), gi_cornell_lamp(), x, n, 1, 4, 9);
+        std::printf("paths %.6f +- %.6f, as many in four lattices %.6f +- %.6f\n", paths[1].mean, paths[1].standard_error,
+                    lattice[1].mean, lattice[1].standard_error);
+        // The error of four samples' mean is itself known within a factor 2 or 3.
+        EXPECT_NEAR(lattice[1].mean, paths[1].mean, 4.5 * paths[1].standard_error + 9 * lattice[1].standard_error);
+        EXPECT_LT(lattice[1].standard_error, 0.5 * paths[1].standard_error);
+    }
+}
+
 TEST(GiRsm, LampsOfAFineMapAddUpToThePathTracersBounce) {
     // An empty room, so that nothing stands between: four walls and the floor's lamps onto a point of the ceiling.
     auto room = gi_cornell_quads();

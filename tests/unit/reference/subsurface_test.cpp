@@ -198,4 +198,40 @@ TEST(SubsurfaceWalk, InversionOfTheAlbedoHoldsForDiffuseLight) {
 }
 
 }  // namespace
+// Receivers that share their walks see what walks of their own see, with the errors of both.
+TEST(SubsurfaceWalk, SharedWalksAgreeWithTheReceiversOwn) {
+    const Medium medium{0.9, 1};
+    const std::vector<double> at{-2, -0.3, 0.4, 3};
+    const auto edge = subsurface_edge(medium, at, 20000, 5);
+    for (std::size_t k = 0; k < at.size(); ++k) {
+        const Estimate own =
+            subsurface_half_space(medium, at[k], 20000, 6 + k, [](const Vec3<double>& p) { return p.x > 0 ? 1.0 : 0.0; });
+        EXPECT_NEAR(edge[k].mean, own.mean, 4.5 * std::hypot(edge[k].standard_error, own.standard_error)) << at[k];
+        EXPECT_LT(edge[k].standard_error, own.standard_error);
+    }
+    const std::vector<double> cosines{-0.7, 0.0, 0.2, 0.9};
+    const auto sphere = subsurface_terminator(medium, 5, cosines, 20000, 7);
+    for (std::size_t k = 0; k < cosines.size(); ++k) {
+        const double c = cosines[k];
+        const Estimate own = subsurface_sphere(medium, 5, {std::sqrt(1 - c * c), 0, c}, 20000, 8 + k,
+                                               [](const Vec3<double>& p) { return std::fmax(p.z / 5, 0.0); });
+        EXPECT_NEAR(sphere[k].mean, own.mean, 4.5 * std::hypot(sphere[k].standard_error, own.standard_error)) << c;
+        EXPECT_LT(sphere[k].standard_error, own.standard_error);
+    }
+}
+
+TEST(SubsurfaceWalk, MeansOverACircle) {
+    for (const double a : {-1.5, -0.6, 0.0, 0.3, 2.0}) {
+        double beyond = 0, clamped = 0;
+        const int n = 100000;
+        for (int i = 0; i < n; ++i) {
+            const double c = std::cos(pi * (i + 0.5) / n);
+            beyond += a + 1.3 * c > 0 ? 1.0 / n : 0.0;
+            clamped += std::fmax(a + 1.3 * c, 0.0) / n;
+        }
+        EXPECT_NEAR(share_beyond_an_edge(a, 1.3), beyond, 2e-5) << a;
+        EXPECT_NEAR(mean_clamped_cosine(a, 1.3), clamped, 1e-8) << a;
+    }
+}
+
 }  // namespace kiln::reference

@@ -6,10 +6,11 @@
 namespace kiln::report {
 namespace {
 
-std::optional<double> measured(const std::string& member, const std::string&, Metric metric) {
+std::optional<Known> measured(const std::string& member, const std::string&, Metric metric) {
     if (member == "missing") return std::nullopt;
-    if (metric == Metric::time) return member == "a" ? 1.0 : member == "b" ? 1.03 : 2.0;
-    return member == "a" ? 1e-3 : member == "b" ? 1e-2 : 0.0;
+    if (metric == Metric::time) return Known{member == "a" ? 1.0 : member == "b" ? 1.03 : 2.0};
+    if (metric == Metric::rmse) return member == "a" ? Known{1.0, 0.1} : member == "b" ? Known{1.15, 0.1} : Known{1.5, 0.1};
+    return Known{member == "a" ? 1e-3 : member == "b" ? 1e-2 : 0.0};
 }
 
 Judged of(Expectation e) { return judge(e, measured); }
@@ -27,6 +28,20 @@ TEST(Expectation, CloseTimesDecideNothing) {
     EXPECT_EQ(of({Metric::time, Relation::below, "a", "c"}).verdict, Verdict::confirmed);
     EXPECT_EQ(of({Metric::time, Relation::below, "c", "a"}).verdict, Verdict::falsified);
     EXPECT_EQ(of({Metric::time, Relation::near, "a", "b"}).verdict, Verdict::confirmed);
+}
+TEST(Expectation, WhatTheReferencesNoiseCouldTurnRoundIsUndecided) {
+    EXPECT_EQ(of({Metric::rmse, Relation::below, "a", "b"}).words,
+              "RMSE of a below b: undecided, 1 against 1.15, closer than the reference's noise of 0.1");
+    EXPECT_EQ(of({Metric::rmse, Relation::below, "b", "a"}).verdict, Verdict::undecided);
+    EXPECT_EQ(of({Metric::rmse, Relation::below, "a", "c"}).verdict, Verdict::confirmed);
+    EXPECT_EQ(of({Metric::rmse, Relation::below, "c", "a"}).verdict, Verdict::falsified);
+    EXPECT_EQ(of({Metric::rmse, Relation::below, "a", "c", 1.4}).verdict, Verdict::undecided);
+    EXPECT_EQ(of({Metric::rmse, Relation::at_most, "a", "", 1.05}).verdict, Verdict::undecided);
+    EXPECT_EQ(of({Metric::rmse, Relation::at_most, "a", "", 1.2}).verdict, Verdict::confirmed);
+    EXPECT_EQ(of({Metric::rmse, Relation::at_least, "a", "", 1.2}).verdict, Verdict::falsified);
+    EXPECT_EQ(of({Metric::rmse, Relation::near, "a", "b", 1.2}).verdict, Verdict::undecided);
+    EXPECT_EQ(of({Metric::rmse, Relation::near, "a", "b", 1.6}).verdict, Verdict::confirmed);
+    EXPECT_EQ(of({Metric::rmse, Relation::near, "a", "c", 1.1}).verdict, Verdict::falsified);
 }
 TEST(Expectation, Bounds) {
     EXPECT_EQ(of({Metric::relmse, Relation::at_most, "a", "", 1e-3}).verdict, Verdict::confirmed);

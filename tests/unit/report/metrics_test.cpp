@@ -65,5 +65,31 @@ TEST(Metrics, RegionCountsItsPixelsAlone) {
     EXPECT_EQ(measure(grey({2.0}), grey({1.0}), {false}).rmse, 0.0);
 }
 
+// A reference off by its standard deviation everywhere, either way, changes no metric by more than is said.
+TEST(Noise, CoversWhatAnUncertainReferenceDoes) {
+    Picture r(4, 1), x(4, 1);
+    std::vector<double> variance(12);
+    for (size_t i = 0; i < 12; ++i) {
+        r.rgb[i] = 1.0 + 0.1 * static_cast<double>(i);
+        x.rgb[i] = r.rgb[i] * (i % 2 == 0 ? 1.2 : 0.95);
+        variance[i] = 1e-4 * static_cast<double>(1 + i % 3);
+    }
+    const Metrics measured = measure(x, r), noise = noise_of(measured, r, variance);
+    EXPECT_GT(noise.rmse, 0.0);
+    EXPECT_LT(noise.rmse, 0.02);
+    for (const int way : {-1, 0, 1}) {
+        Picture off = r;
+        for (size_t i = 0; i < 12; ++i)
+            off.rgb[i] += (way == 0 ? (x.rgb[i] > r.rgb[i] ? -1.0 : 1.0) : way) * std::sqrt(variance[i]);
+        const Metrics m = measure(x, off);
+        EXPECT_LE(std::fabs(m.rmse - measured.rmse), noise.rmse + 1e-12);
+        EXPECT_LE(std::fabs(m.relmse - measured.relmse), 1.1 * noise.relmse);
+        EXPECT_LE(std::fabs(m.bias - measured.bias), 1.2 * noise.bias);
+        EXPECT_LE(std::fabs(m.max_rel - measured.max_rel), noise.max_rel);
+        EXPECT_LE(std::fabs(m.max_abs - measured.max_abs), noise.max_abs);
+    }
+    EXPECT_EQ(noise_of(measured, r, {}).rmse, 0.0);
+}
+
 }  // namespace
 }  // namespace kiln::report
