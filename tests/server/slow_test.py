@@ -1,0 +1,170 @@
+#!/usr/bin/env python3
+"""Clients that are slow, idle, many or gone, and the server's end: each costs no more than its connection and its deadline.
+
+usage: slow_test.py KILN_CACHED [TEST...]. No test asserts how long something takes: it waits for what must happen.
+"""
+import signal
+import socket
+import threading
+
+from cached import Cached, Failed, check, equal, key, main, readable, statuses
+
+BLOB = b"b" * 50_000
+PUT = f"PUT /cas/{key(BLOB)} HTTP/1.1\r\nHost: h\r\nContent-Length: {len(BLOB)}\r\n\r\n".encode()
+GET = f"GET /cas/{key(BLOB)} HTTP/1.1\r\nHost: h\r\n\r\n".encode()
+
+
+def ended(s, drip=None, seconds=20):
+    """Whether the server ends the connection while the client drips."""
+    for _ in range(int(seconds / 0.05)):
+        if readable(s, 0.05):
+            try:
+                if not s.recv(65536):
+                    return True
+            except OSError:
+                return True
+        if drip:
+            try:
+                s.send(drip)
+            except OSError:
+                return True
+    return False
+
+
+def deadlines(binary):
+    """Slow at the head, the body, reading, or doing nothing: ended by the deadline, while others are served."""
+    short = {"timeouts_head": "500ms", "timeouts_body": "500ms", "timeouts_write": "500ms", "timeouts_idle": "500ms"}
+    large = b"L" * (32 << 20)
+    with Cached(binary, **short) as server:
+        equal(server.put(BLOB), 201, "positive control")
+        equal(server.put(large), 201, "positive control: 32 MiB")
+        slow = {"head": server.connect(), "body": server.connect(), "idle": server.connect(), "second head": server.connect(),
+                "reader": socket.socket()}
+        slow["reader"].setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        slow["reader"].connect(("127.0.0.1", server.port))
+        slow["head"].send(b"GET /cas/")
+        slow["body"].send(PUT + b"b")
+        slow["second head"].send(GET)
+        slow["reader"].send(f"GET /cas/{key(large)} HTTP/1.1\r\nHost: h\r\n\r\n".encode())
+        equal(server.get(BLOB).status, 200, "another client meanwhile")
+        check(ended(slow["head"], b"a"), "a head a byte at a time goes on for ever")
+        check(ended(slow["body"], b"b"), "a body a byte at a time goes on for ever")
+        check(ended(slow["idle"]), "an idle connection stays for ever")
+        check(ended(slow["second head"], None), "an idle connection stays for ever after its first request")
+        # The reader reads nothing; once the server has given up, what the kernel held is all that ever comes.
+        held = lambda: [line for line in server.call("GET", "/metrics").body.decode().splitlines() if "timeout" in line and line[0] != "#"]
+        for _ in range(200):
+            if float(held()[0].split()[-1]) >= 3:
+                break
+            readable(slow["reader"], 0)
+            threading.Event().wait(0.05)
+        got = 0
+        while part := slow["reader"].recv(1 << 20):
+            got += len(part)
+        check(got < len(large), f"a client that did not read got all {got} bytes")
+        for s in slow.values():
+            s.close()
+        equal(server.get(large).body, large, "a client that does read")
+
+
+def caps(binary):
+    """More connections than the cap: told so, and served again once there is room."""
+    with Cached(binary, limits_connections=20) as server:
+        equal(server.put(BLOB), 201, "positive control")
+        held = [server.connect() for _ in range(20)]
+        for s in held:  # each is known to be open
+            s.sendall(GET)
+            check(readable(s, 20), "a connection within the cap is not served")
+        over = [server.raw(b"") for _ in range(5)]
+        equal([statuses(o) for o in over], [[503]] * 5, "connections over the cap")
+        for s in held:
+            s.close()
+        for _ in range(100):
+            if statuses(server.raw(GET.replace(b"\r\n\r\n", b"\r\nConnection: close\r\n\r\n"))) == [200]:
+                return
+        raise Failed("no connection after the others had gone")
+
+
+def announced_memory(binary):
+    """A hundred clients announce 200 MiB each and send nothing: memory is taken for what comes, not for what is said."""
+    with Cached(binary) as server:
+        equal(server.put(BLOB), 201, "positive control")
+        before = server.memory()
+        head = b"PUT /cas/" + b"a" * 64 + b" HTTP/1.1\r\nHost: h\r\nContent-Length: 209715200\r\n\r\nsome"
+        held = [server.connect() for _ in range(100)]
+        for s in held:
+            s.sendall(head)
+        equal(server.get(BLOB).status, 200, "another client meanwhile")
+        check(server.memory() - before < 40 << 20, f"memory grew by {(server.memory() - before) >> 20} MiB")
+        for s in held:
+            s.close()
+
+
+def in_flight(binary):
+    """Bodies beyond the server's memory for them are told 503, later ones are taken."""
+    body = b"i" * 900_000
+    with Cached(binary, limits_blob="1MiB", limits_in_flight="2MiB") as server:
+        head = f"PUT /cas/{key(body)} HTTP/1.1\r\nHost: h\r\nContent-Length: {len(body)}\r\n\r\n".encode()
+        held = []
+        busy = False
+        for _ in range(6):
+            s = server.connect()
+            s.sendall(head + body[:-1])
+            held.append(s)
+        for s in held:
+            if readable(s, 1):
+                busy |= statuses(s.recv(4096)) == [503]
+        check(busy, "six bodies of 0.9 MB fit into 2 MiB")
+        for s in held:
+            s.close()
+        for _ in range(200):
+            if server.put(body) == 201:
+                break
+            threading.Event().wait(0.02)
+        equal(server.get(body).body, body, "a body once the others have gone")
+
+
+def goes_away(binary):
+    """Clients that reset in the middle of everything."""
+    with Cached(binary) as server:
+        equal(server.put(BLOB), 201, "positive control")
+        large = b"M" * (8 << 20)
+        equal(server.put(large), 201, "positive control")
+        for data in (b"", b"GE", GET, PUT[:30], PUT, PUT + BLOB[:100], PUT + BLOB, f"GET /cas/{key(large)} HTTP/1.1\r\nHost: h\r\n\r\n".encode()):
+            for _ in range(20):
+                s = server.connect()
+                s.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, b"\1\0\0\0\0\0\0\0")
+                s.send(data)
+                s.close()
+        equal(server.get(large).body, large, "another client afterwards")
+
+
+def drains(binary):
+    """SIGTERM: what is under way ends well, idle connections are closed, nothing new is taken, the exit code is 0."""
+    with Cached(binary) as server:
+        idle, busy = server.connect(), server.connect()
+        idle.sendall(GET)
+        check(readable(idle, 20), "no reply")
+        idle.recv(65536)
+        busy.sendall(PUT + BLOB[:1000])
+        equal(server.get(BLOB).status, 404, "not yet there")  # by now the server has the beginning of the body
+        server.process.send_signal(signal.SIGTERM)
+        check(ended(idle), "an idle connection outlives SIGTERM")
+        check(server.process.poll() is None, "the server did not wait for the body")
+        busy.sendall(BLOB[1000:])
+        check(statuses(busy.recv(65536)) == [201], "the request under way was cut")
+        equal(server.process.wait(30), 0, "exit code")
+        check(server.blob_path(key(BLOB)).read_bytes() == BLOB, "the blob is not on disk")
+
+
+def drain_has_an_end(binary):
+    with Cached(binary, timeouts_drain="300ms") as server:
+        s = server.connect()
+        s.sendall(PUT + b"b")
+        equal(server.get(BLOB).status, 404, "not yet there")
+        server.process.send_signal(signal.SIGTERM)
+        equal(server.process.wait(30), 0, "exit code though a client never ended")
+
+
+if __name__ == "__main__":
+    main([deadlines, caps, announced_memory, in_flight, goes_away, drains, drain_has_an_end])
