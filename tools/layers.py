@@ -21,6 +21,10 @@ THIRD_PARTY = {
     "openssl/": {"compiler/base/sha256.cpp", "cache/server/stream_hash.cpp"},
     # Beast's connection is a template over its stream (TCP, TLS), hence a header beside the one source file.
     "boost/": {"cache/server/http_server.cpp", "cache/server/http_connection.h"},
+    # Services derive from generated classes, a source each; what they share is in the header.
+    "grpcpp/": {"cache/server/grpc_call.h", "cache/server/grpc_server.cpp"},
+    "remote_execution": {"cache/server/grpc_call.h"},
+    "bytestream": {"cache/server/grpc_stream.cpp"},
     "prometheus/": {"cache/server/metrics_page.cpp"},
     "zstd": {"cache/zstd.cpp"},
     "gmp": {"compiler/space/count.cpp"},

@@ -9,12 +9,12 @@ packages=(
   build-essential cmake ninja-build ccache pkg-config
   glslang-dev spirv-tools spirv-headers libspirv-cross-c-shared-dev
   libyaml-cpp-dev libxxhash-dev libgmp-dev libssl-dev liblz4-dev liblmdb-dev libpng-dev libmimalloc-dev libboost-dev libzstd-dev
-  prometheus-cpp-dev
+  prometheus-cpp-dev libgrpc++-dev libprotobuf-dev protobuf-compiler protobuf-compiler-grpc
   # running variants
   libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
   # tests and checks
   libgtest-dev libgmock-dev libbenchmark-dev glslang-tools glslc spirv-cross clang clang-format clang-tidy libclang-rt-14-dev
-  python3 python3-yaml python3-jsonschema git make protobuf-compiler curl nginx-extras bazel-bootstrap zstd openssl
+  python3 python3-yaml python3-jsonschema git make curl nginx-extras bazel-bootstrap zstd openssl
   chromium chromium-driver
 )
 bench=(qt6-shader-baker)

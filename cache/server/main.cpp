@@ -12,6 +12,7 @@
 #include "cache/server/action_reader.h"
 #include "cache/server/config.h"
 #include "cache/server/facts.h"
+#include "cache/server/grpc_server.h"
 #include "compiler/base/files.h"
 
 namespace kiln {
@@ -215,6 +216,19 @@ int serve(const Config& config) {
     if (!http.ok()) return fail(http.error());
     http_now = http->get();
     std::printf("http %s:%u\n", config.http.address.c_str(), (*http)->port());
+    std::unique_ptr<GrpcServer> grpc;
+    if (config.grpc_port >= 0) {
+        GrpcOptions options;
+        options.address = config.grpc_address;
+        options.port = static_cast<uint16_t>(config.grpc_port);
+        options.certificate = config.http.certificate;
+        options.key = config.http.key;
+        auto started_grpc = GrpcServer::start(
+            service, [&] { return tokens.get(); }, options);
+        if (!started_grpc.ok()) return fail(started_grpc.error());
+        grpc = std::move(*started_grpc);
+        std::printf("grpc %s:%u\n", config.grpc_address.c_str(), grpc->port());
+    }
     std::fflush(stdout);
     log.event(std::move(LogLine("started")
                             .text("version", KILN_VERSION)
@@ -244,6 +258,7 @@ int serve(const Config& config) {
         log.event(std::move(line));
     }
     const bool all = (*http)->drain(config.drain);
+    if (grpc) grpc->drain(std::chrono::duration_cast<std::chrono::seconds>(config.drain));
     log.event(std::move(LogLine("stopped").text("drained", all ? "yes" : "no")));
     return 0;
 }
