@@ -85,6 +85,7 @@ std::optional<Target> parse_target(std::string_view text) {
     if (!split_at(text, "dav", before, after) || !valid_instance_name(before)) return std::nullopt;
     target.what = What::dav;
     target.instance = before;
+    if (after.size() > 1 && after[0] == '/') after.remove_prefix(1);  // sccache, of an endpoint that ends in a slash
     target.collection = after.empty() || after.back() == '/';
     if (!after.empty() && after.back() == '/') after.remove_suffix(1);
     if (!after.empty() && !valid_path(after)) return std::nullopt;
