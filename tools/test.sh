@@ -26,6 +26,7 @@ build() {
 }
 
 if [ "$full" = yes ]; then
+  export KILN_PEERS_BAZEL=yes
   export KILN_KILL_ROUNDS=200  # of processes killed in the middle of their work with a store
   git ls-files '*.cpp' '*.h' '*.hpp' | xargs clang-format --dry-run --Werror
   build tsan unit_tests
