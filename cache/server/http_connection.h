@@ -326,13 +326,21 @@ private:
             from = part_.data();
         }
         deadline(shared_.options.write_timeout);
-        const std::array<net::const_buffer, 2> out{first ? net::buffer(head_) : net::const_buffer(), net::buffer(from, n)};
-        net::async_write(stream_, out, [self = this->shared_from_this(), n](beast::error_code failed, size_t) {
+        const auto written = [self = this->shared_from_this(), n](beast::error_code failed, size_t) {
             if (failed) return self->gone(failed, true);
             self->sent_ += n;
             if (self->sent_ < self->to_send_) return self->write_some(false);
             self->on_sent();
-        });
+        };
+        if constexpr (secure) {
+            // One buffer: of two, with the first empty or written and the second over 16 KiB, Beast 1.74 writes none and asio
+            // takes that for the end.
+            if (first) head_.append(reinterpret_cast<const char*>(from), n);
+            net::async_write(stream_, first ? net::const_buffer(net::buffer(head_)) : net::buffer(from, n), written);
+        } else {
+            const std::array<net::const_buffer, 2> out{first ? net::buffer(head_) : net::const_buffer(), net::buffer(from, n)};
+            net::async_write(stream_, out, written);
+        }
     }
 
     void on_sent() {
@@ -353,6 +361,7 @@ private:
         }
         response_ = HttpResponse();
         part_ = Bytes();
+        if (secure) head_ = std::string();
         if (!close_) return next_request();
         finish();
     }

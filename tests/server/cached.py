@@ -66,7 +66,7 @@ class Cached:
             config.write_text("instances:\n" + "".join(f"  - {{{line}}}\n" for line in instances))
             words.append("--config=" + str(config))
         words += [f"--{name}={value}" for name, value in settings.items()]
-        self.secure = "tls.certificate" in settings
+        self.secure, self.certificate = "tls.certificate" in settings, settings.get("tls.certificate")
         self.log_path = self.home / "log"
         with open(self.log_path, "wb") as log:
             self.process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=log, preexec_fn=before)
