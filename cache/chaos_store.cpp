@@ -80,6 +80,17 @@ Result<std::optional<Bytes>> ChaosStore::get(Keyspace space, const Digest& key) 
 }
 
 Status ChaosStore::put(Keyspace space, const Digest& key, ByteView bytes) {
+    if (const auto done = meddle(space, key)) return *done;
+    return inner_.put(space, key, bytes);
+}
+
+Status ChaosStore::put_record(const Digest& key, ByteView record, std::span<const Digest> blobs) {
+    if (const auto done = meddle(Keyspace::action, key)) return *done;
+    return inner_.put_record(key, record, blobs);
+}
+
+// What a write that is not to reach the store returns instead.
+std::optional<Status> ChaosStore::meddle(Keyspace space, const Digest& key) {
     const auto roll = [&](Draw what) { return draw(chaos_, true, what, space, key); };
     if (chaos_.delay != 0) {
         ++delayed_;
@@ -91,9 +102,9 @@ Status ChaosStore::put(Keyspace space, const Digest& key, ByteView bytes) {
     }
     if (happens(chaos_.loss, roll(Draw::loss))) {
         ++lost_;
-        return {};
+        return Status();
     }
-    return inner_.put(space, key, bytes);
+    return std::nullopt;
 }
 
 bool flip_bit(const std::string& path, uint64_t dice) {

@@ -36,10 +36,14 @@ public:
 
     Result<std::optional<Bytes>> get(Keyspace space, const Digest& key) override;
     Status put(Keyspace space, const Digest& key, ByteView bytes) override;
+    Status put_record(const Digest& key, ByteView record, std::span<const Digest> blobs) override;
+    void expect(std::span<const Digest> actions) override { inner_.expect(actions); }
     bool keeps() const override { return inner_.keeps(); }
     Counters counters() const { return {lost_.load(), failed_.load(), flipped_.load(), delayed_.load()}; }
 
 private:
+    std::optional<Status> meddle(Keyspace space, const Digest& key);
+
     Store& inner_;
     const Chaos chaos_;
     const Flip flip_;

@@ -1,6 +1,13 @@
-// The list of files sits in an action record under K1; the result, which can be large, is a blob that the action record under
-// K2 names. A damaged record reads as absent, so a memo can cost time but never give a wrong result.
+// The chain of records (memo.h). A record never says anything that the bytes its key was made of do not decide, except how many
+// names it adds at a time; so two builds that write the same key write what serves both, and a store may keep the first.
+//
+//     record = u8 0: more   n * text                                   names, relative to the folder
+//            | u8 1: found  32 bytes, name of the result's blob; n * text, which of the names were read
+//
+// A damaged record reads as absent, so a memo can cost time but never give a wrong result.
 #include "compiler/memo.h"
+
+#include <map>
 
 #include "compiler/space/set_wire.h"
 
@@ -8,17 +15,79 @@ namespace kiln {
 
 namespace {
 
-Digest second_key(const Digest& asked, ByteView list) {
-    KeyHasher hasher("kiln.memo.v1");
-    hasher.field("asked", asked).field("list", list);
-    return hasher.finish();
+constexpr size_t most_steps = 64;
+constexpr size_t most_names = 100'000;
+
+// What the walk along a chain has seen: files as they are now, by their names in records.
+struct Seen {
+    std::map<std::string, SourceRead> files;
+    Digest key;
+};
+
+struct Record {
+    bool found = false;
+    Digest result;
+    std::vector<std::string> names;
+};
+
+Bytes write_record(const Record& record) {
+    WireWriter out;
+    out.u8(record.found ? 1 : 0);
+    if (record.found) out.raw(record.result.bytes);
+    out.u64(record.names.size());
+    for (const std::string& name : record.names) out.text(name);
+    return out.take();
 }
 
-bool still_holds(Files& files, const SourceRead& read) {
-    const auto text = files.read(read.path);
-    if (!text.ok()) return false;
-    if (!text->has_value()) return !read.present;
-    return read.present && sha256(as_bytes(**text)) == read.digest;
+std::optional<Record> read_record(ByteView bytes) {
+    WireReader in(bytes);
+    Record record;
+    const uint8_t kind = in.u8();
+    record.found = kind == 1;
+    if (record.found) {
+        const ByteView name = in.raw(record.result.bytes.size());
+        std::copy(name.begin(), name.end(), record.result.bytes.begin());
+    }
+    const size_t count = in.count(8);
+    if (count > most_names) in.fail();
+    for (size_t i = 0; i < count && in.ok(); ++i) {
+        record.names.push_back(in.text());
+        if (record.names.back().empty() || record.names.back().find('\0') != std::string::npos) in.fail();
+    }
+    if (!in.ok() || !in.at_end() || kind > 1 || (kind == 0 && count == 0)) return std::nullopt;
+    return record;
+}
+
+std::optional<Record> get_record(Store& store, const Digest& key) {
+    const auto bytes = store.get(Keyspace::action, key);
+    if (!bytes.ok() || !bytes->has_value()) return std::nullopt;
+    return read_record(**bytes);
+}
+
+// Adds files to what was seen; false when one was seen before or cannot be read.
+bool look_at(Seen& seen, const std::vector<SourceRead>& files, const std::string& folder) {
+    WireWriter list;
+    for (const SourceRead& file : files) {
+        const std::string name = relative_path(folder, file.path);
+        if (!seen.files.emplace(name, file).second) return false;
+        list.text(name);
+        list.u8(file.present ? 1 : 0);
+        list.raw(file.digest.bytes);
+    }
+    KeyHasher hasher("kiln.memo.v2");
+    hasher.field("so far", seen.key).field("list", list.view());
+    seen.key = hasher.finish();
+    return true;
+}
+
+std::optional<SourceRead> now(Files& files, const std::string& path) {
+    const auto text = files.read(path);
+    if (!text.ok()) return std::nullopt;
+    SourceRead read;
+    read.path = path;
+    read.present = text->has_value();
+    if (read.present) read.digest = sha256(as_bytes(**text));
+    return read;
 }
 
 void write_place(WireWriter& out, const Place& place, const std::string& folder) {
@@ -36,60 +105,71 @@ Place read_place(WireReader& in, const std::string& folder) {
     return place;
 }
 
-void write_reads(WireWriter& out, const std::vector<SourceRead>& reads, const std::string& folder) {
-    out.u64(reads.size());
-    for (const SourceRead& read : reads) {
-        out.text(relative_path(folder, read.path));
-        out.u8(read.present ? 1 : 0);
-        out.raw(read.digest.bytes);
-    }
-}
-
-bool read_reads(WireReader& in, std::vector<SourceRead>& reads, const std::string& folder) {
-    const size_t count = in.count(8 + 1 + 32);
-    for (size_t i = 0; i < count && in.ok(); ++i) {
-        SourceRead read;
-        read.path = join_path(folder, in.text());
-        const uint8_t present = in.u8();
-        if (present > 1) in.fail();
-        read.present = present == 1;
-        const ByteView digest = in.raw(32);
-        std::copy(digest.begin(), digest.end(), read.digest.bytes.begin());
-        reads.push_back(std::move(read));
-    }
-    return in.ok();
-}
-
 }  // namespace
 
 std::optional<Bytes> recall(Store& store, Files& files, const std::string& folder, const Digest& asked,
                             std::vector<SourceRead>& reads) {
-    const auto list = store.get(Keyspace::action, asked);
-    if (!list.ok() || !list->has_value()) return std::nullopt;
-    WireReader in(**list);
-    std::vector<SourceRead> found;
-    if (!read_reads(in, found, folder) || !in.at_end()) return std::nullopt;
-    for (const SourceRead& read : found)
-        if (!still_holds(files, read)) return std::nullopt;
-    const auto record = store.get(Keyspace::action, second_key(asked, **list));
-    if (!record.ok() || !record->has_value() || (*record)->size() != sizeof(Digest::bytes)) return std::nullopt;
-    Digest name;
-    std::copy((*record)->begin(), (*record)->end(), name.bytes.begin());
-    auto result = store.get(Keyspace::blob, name);
-    if (!result.ok() || !result->has_value()) return std::nullopt;
-    reads = std::move(found);
-    return std::move(**result);
+    Seen seen;
+    seen.key = asked;
+    for (size_t step = 0; step < most_steps; ++step) {
+        const std::optional<Record> record = get_record(store, seen.key);
+        if (!record) return std::nullopt;
+        if (record->found) {
+            std::vector<SourceRead> used;
+            for (const std::string& name : record->names) {
+                const auto file = seen.files.find(name);
+                if (file == seen.files.end()) return std::nullopt;
+                used.push_back(file->second);
+            }
+            auto result = store.get(Keyspace::blob, record->result);
+            if (!result.ok() || !result->has_value()) return std::nullopt;
+            reads = std::move(used);
+            return std::move(**result);
+        }
+        std::vector<SourceRead> more;
+        for (const std::string& name : record->names) {
+            auto file = now(files, join_path(folder, name));
+            if (!file) return std::nullopt;
+            more.push_back(std::move(*file));
+        }
+        if (!look_at(seen, more, folder)) return std::nullopt;
+    }
+    return std::nullopt;
 }
 
-Status remember(Store& store, const std::string& folder, const Digest& asked, const std::vector<SourceRead>& reads,
+Status remember(Store& store, Files& files, const std::string& folder, const Digest& asked, const std::vector<SourceRead>& reads,
                 ByteView result) {
     if (!store.keeps()) return {};
-    WireWriter list;
-    write_reads(list, reads, folder);
-    const Digest name = sha256(result);
-    KILN_TRY(store.put(Keyspace::blob, name, result));
-    KILN_TRY(store.put(Keyspace::action, second_key(asked, list.view()), name.bytes));
-    return store.put(Keyspace::action, asked, list.view());
+    std::map<std::string, SourceRead> left;  // as they were when they were read, whatever they are now
+    Record final{true, sha256(result), {}};
+    for (const SourceRead& read : reads)
+        if (left.emplace(relative_path(folder, read.path), read).second) final.names.push_back(relative_path(folder, read.path));
+    Seen seen;
+    seen.key = asked;
+    for (size_t step = 0; step < most_steps && !left.empty(); ++step) {
+        const std::optional<Record> there = get_record(store, seen.key);
+        std::vector<SourceRead> more;
+        for (const std::string& name : there && !there->found ? there->names : std::vector<std::string>()) {
+            const auto own = left.find(name);
+            auto file = own != left.end() ? std::optional(own->second) : now(files, join_path(folder, name));
+            if (!file) return {};
+            more.push_back(std::move(*file));
+        }
+        if (more.empty()) {
+            Record rest;
+            for (const std::string& name : final.names)
+                if (const auto own = left.find(name); own != left.end()) {
+                    rest.names.push_back(name);
+                    more.push_back(own->second);
+                }
+            KILN_TRY(store.put(Keyspace::action, seen.key, write_record(rest)));
+        }
+        if (!look_at(seen, more, folder)) return {};
+        for (const SourceRead& file : more) left.erase(relative_path(folder, file.path));
+    }
+    if (!left.empty()) return {};
+    KILN_TRY(store.put(Keyspace::blob, final.result, result));
+    return store.put_record(seen.key, write_record(final), {&final.result, 1});
 }
 
 void write_diags(WireWriter& out, const Diags& diags, const std::string& folder) {

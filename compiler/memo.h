@@ -1,6 +1,7 @@
 #pragma once
-// What a build remembers of its inputs, in two steps as ccache's direct mode: what was asked (K1) names the list of files that
-// were read and probed last time; if all of that still holds, asked + list (K2) names the result (ARCHITECTURE.md, Cache).
+// What a build remembers of its inputs: a chain of records. What was asked names a list of files; that and what these files hold
+// now names more files, and so on until the result is named (ARCHITECTURE.md, Cache). As in ccache's direct mode, but that
+// nothing is ever replaced: two branches share a store, and a server may refuse to change a record that it has.
 
 #include <optional>
 #include <vector>
@@ -15,13 +16,12 @@ namespace kiln {
 // Records name files relative to `folder` (the manifest's), so that two checkouts that share a store never answer for each
 // other's files; paths given and returned are as opened.
 
-// The result remembered for `asked`, when every file on its list still has its digest or is still absent. `reads` receives the
-// list.
+// The result remembered for `asked` and the files as they are now. `reads` receives those that it depends on.
 std::optional<Bytes> recall(Store& store, Files& files, const std::string& folder, const Digest& asked,
                             std::vector<SourceRead>& reads);
 
 // Remembers `result` under `asked` and the files it depended on. Store failures are returned, not reported.
-Status remember(Store& store, const std::string& folder, const Digest& asked, const std::vector<SourceRead>& reads,
+Status remember(Store& store, Files& files, const std::string& folder, const Digest& asked, const std::vector<SourceRead>& reads,
                 ByteView result);
 
 void write_diags(WireWriter& out, const Diags& diags, const std::string& folder);

@@ -253,7 +253,7 @@ void pass_classes(Build& build, const BuildOptions& options, PassContext& contex
                 if (!split->diags.has_errors() && context.store.keeps()) {
                     WireWriter out;
                     write_split(out, *split, space, manifest.folder);
-                    stored[i] = remember(context.store, manifest.folder, asked, split->reads, out.view());
+                    stored[i] = remember(context.store, context.files, manifest.folder, asked, split->reads, out.view());
                 }
             }
             build.splits[i] = std::move(split);
@@ -365,7 +365,7 @@ Build run_pass(const BuildOptions& options, PassContext& context) {
     if (build.ok() && context.store.keeps()) {
         WireWriter out;
         write_build(out, build, folder);
-        note_store_failure(build, remember(context.store, folder, asked, reads, out.view()));
+        note_store_failure(build, remember(context.store, context.files, folder, asked, reads, out.view()));
     }
     return build;
 }

@@ -19,7 +19,7 @@ double peak_mebibytes() {
     return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-std::string as_json(const Build& build) {
+std::string as_json(const Build& build, const RemoteCache* remote) {
     Json json;
     json.object().key("counts").object();
     json.text("declared", build.counts.declared.decimal()).text("legal", build.counts.legal.decimal());
@@ -35,7 +35,9 @@ std::string as_json(const Build& build) {
     json.number("table", uint64_t{build.files.table.size()}).number("proof", uint64_t{build.files.proof.size()});
     json.number("peak_memory", static_cast<uint64_t>(peak_mebibytes() * 1048576.0)).end().key("ms").object();
     for (const auto& [step, ms] : build.ms) json.number(step, ms);
-    json.end().end();
+    json.end();
+    if (remote != nullptr) remote_json(json, *remote);
+    json.end();
     return json.take();
 }
 
@@ -121,7 +123,6 @@ Status publish(Files& files, const Args& args, const Build& build, const std::st
         if (!old.ok() || !old->has_value() || **old != build.key_header)
             KILN_TRY(files.write(args.value("--header"), as_bytes(build.key_header)));
     }
-    if (args.has("--report-json")) KILN_TRY(files.write(args.value("--report-json"), as_bytes(as_json(build))));
     KILN_TRY(files.write(output, build.files.table));
     if (args.has("--depfile")) KILN_TRY(files.write(args.value("--depfile"), as_bytes(depfile(output, build.depends))));
     return {};
@@ -142,14 +143,20 @@ int run_build(const Args& args) {
     if (const Status status = check_outputs(outputs, build.depends); !status.ok()) return print_error(status.error());
     const std::string output = args.value("--output");
     if (const Status status = publish((*session)->files, args, build, output); !status.ok()) return print_error(status.error());
-    if (args.has("--json")) return finish(as_json(build));
-    return finish(as_text(build, output));
+    (*session)->finish();
+    const RemoteCache* remote = (*session)->remote ? &(*session)->remote->remote() : nullptr;
+    const std::string report = args.has("--json") || args.has("--report-json") ? as_json(build, remote) : std::string();
+    if (args.has("--report-json"))
+        if (const Status status = (*session)->files.write(args.value("--report-json"), as_bytes(report)); !status.ok())
+            return print_error(status.error());
+    if (args.has("--json")) return finish(report);
+    return finish(as_text(build, output) + (remote != nullptr ? remote_text(*remote) : std::string()));
 }
 
 }  // namespace
 
 const Verb verb_build{"build",
-                      "MANIFEST -o T.kiln [--scene S]… [--target T]… [--cache DIR] [--cache-size SIZE] [-j N] [-g] "
+                      "MANIFEST -o T.kiln [--scene S]… [--target T]… [--cache DIR|URL]… [--cache-size SIZE] [-j N] [-g] "
                       "[--parse-back] [--header F] [--depfile D] "
                       "[--json | --report-json F]",
                       "compile a manifest into a variant table and its proof",
@@ -160,6 +167,8 @@ const Verb verb_build{"build",
                        {"--target", nullptr, "NAME", "instead of the manifest's targets", true},
                        option_cache,
                        option_cache_size,
+                       option_cache_timeout,
+                       option_cache_read_only,
                        option_chaos,
                        option_jobs,
                        {"-g", nullptr, nullptr, "keep names and lines for debuggers; layout then tells classes apart"},

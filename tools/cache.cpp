@@ -107,7 +107,11 @@ int run_cache(const Args& args) {
     if (what != "stats" && what != "verify" && what != "gc" && what != "clear")
         return print_error({Fault::usage, "kiln cache: '" + what + "': say stats, verify, gc or clear"});
     if (args.has("--max-size") && what != "gc") return print_error({Fault::usage, "kiln cache: --max-size belongs to gc"});
-    const std::string folder = args.value("--cache", default_cache_folder());
+    const auto places = CachePlaces::of(args);
+    if (!places.ok()) return print_error(places.error());
+    if (args.has("--cache") && !places->url.empty())
+        return print_error({Fault::usage, "kiln cache: it looks after folders; a cache server shows its own state at /status"});
+    const std::string& folder = places->folder;
     if (folder.empty()) return print_error({Fault::usage, "kiln cache: no home folder; name the cache with --cache DIR"});
     const auto options = cache_options(args);
     if (!options.ok()) return print_error(options.error());

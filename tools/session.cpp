@@ -1,5 +1,7 @@
 #include "tools/session.h"
 
+#include <unistd.h>
+
 #include <cstdlib>
 
 #include "cache/disk_store.h"
@@ -8,7 +10,10 @@
 namespace kiln {
 
 const Option option_scene{"--scene", nullptr, "FILE", "keep only what this scene needs", true};
-const Option option_cache{"--cache", nullptr, "DIR", "cache folder, or 'none'; default $XDG_CACHE_HOME/kiln"};
+const Option option_cache{"--cache", nullptr, "DIR|URL",
+                          "cache folder or 'none', and a cache server, http://, https:// or grpc://; default $KILN_CACHE, else "
+                          "$XDG_CACHE_HOME/kiln",
+                          true};
 const Option option_jobs{"--jobs", "-j", "N", "threads; default one a core"};
 const Option option_json{"--json", nullptr, nullptr, "print one JSON document on standard output"};
 const Option option_shader{"--shader", nullptr, "NAME", "which shader, where there are several"};
@@ -53,7 +58,16 @@ Result<DiskOptions> cache_options(const Args& args) {
     return options;
 }
 
+void Session::finish() {
+    if (finished_ || !remote) return;
+    finished_ = true;
+    remote->finish();
+    if (const std::string note = remote_note(remote->remote()); !note.empty()) print_note(note);
+    if (const std::string warning = remote_warning(remote->remote()); !warning.empty()) print_note("warning: " + warning);
+}
+
 Session::~Session() {
+    finish();
     if (!chaos) return;
     const ChaosStore::Counters did = chaos->counters();
     print_note("chaos: lost " + std::to_string(did.lost) + ", failed " + std::to_string(did.failed) + ", flipped " +
@@ -69,13 +83,19 @@ Result<std::unique_ptr<Session>> Session::open(const Args& args) {
     KILN_TRY(disk);
     const auto chaos = Chaos::parse(args.value("--chaos"));
     KILN_TRY(chaos);
-    const std::string where = args.value("--cache", default_cache_folder());
+    const auto places = CachePlaces::of(args);
+    KILN_TRY(places);
+    const std::string& where = places->folder;
     ChaosStore::Flip flip;
-    if (where != "none" && !where.empty()) {
+    LayeredStore::Has has;
+    if (!where.empty()) {
         auto store = DiskStore::open(where, *disk);
         if (store.ok()) {
             flip = [on_disk = store->get()](Keyspace space, const Digest& key, uint64_t dice) {
                 return flip_bit(on_disk->path_of(space, key), dice);
+            };
+            has = [on_disk = store->get()](Keyspace space, const Digest& key) {
+                return ::access(on_disk->path_of(space, key).c_str(), F_OK) == 0;
             };
             session->store = std::move(*store);
         } else {
@@ -83,11 +103,25 @@ Result<std::unique_ptr<Session>> Session::open(const Args& args) {
         }
     }
     if (!session->store) session->store = std::make_unique<NoStore>();
-    if (args.has("--chaos")) session->chaos = std::make_unique<ChaosStore>(*session->store, *chaos, std::move(flip));
-    Store& store = session->chaos ? static_cast<Store&>(*session->chaos) : *session->store;
+    Store* store = session->store.get();
+    if (!places->url.empty()) {
+        auto remote = open_remote(args, places->url, *store, std::move(has), args.has("--chaos") ? &*chaos : nullptr);
+        if (remote.ok()) {
+            session->remote = std::move(*remote);
+            store = session->remote.get();
+        } else if (remote.error().fault == Fault::usage) {
+            return remote.error();
+        } else {
+            print_note("warning: building without the cache server: " + remote.error().message);
+        }
+    }
+    if (args.has("--chaos")) {
+        session->chaos = std::make_unique<ChaosStore>(*store, *chaos, std::move(flip));
+        store = session->chaos.get();
+    }
     session->tools = make_toolchain();
     session->context =
-        std::make_unique<PassContext>(PassContext{session->files, store, *session->tools, *session->jobs, terminal_progress()});
+        std::make_unique<PassContext>(PassContext{session->files, *store, *session->tools, *session->jobs, terminal_progress()});
     return session;
 }
 

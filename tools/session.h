@@ -7,20 +7,27 @@
 #include "cache/disk_options.h"
 #include "compiler/pass.h"
 #include "tools/args.h"
+#include "tools/remote.h"
 
 namespace kiln {
 
 struct Session {
     DiskFiles files;
-    std::unique_ptr<Store> store;
-    std::unique_ptr<ChaosStore> chaos;  // in front of `store`, when --chaos asks for it
+    std::unique_ptr<Store> store;          // local
+    std::unique_ptr<LayeredStore> remote;  // in front of `store`, when a cache server is named
+    std::unique_ptr<ChaosStore> chaos;     // in front of both, when --chaos asks for it
     std::unique_ptr<Toolchain> tools;
     std::unique_ptr<Jobs> jobs;
     std::unique_ptr<PassContext> context;
 
-    // Opens the cache that --cache names ("none": only this run's memory); one that cannot be opened is a warning.
+    // Opens the caches that --cache names; one that cannot be opened is a warning.
     static Result<std::unique_ptr<Session>> open(const Args& args);
-    ~Session();  // says what --chaos did
+    // Ends what goes to the cache server, and warns once if that was done without. Only the first call does anything.
+    void finish();
+    ~Session();  // finishes; says what --chaos did
+
+private:
+    bool finished_ = false;
 };
 
 // Options shared by verbs; `scene`, `cache` and `jobs` read by build_options and Session::open.

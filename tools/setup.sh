@@ -8,7 +8,7 @@ packages=(
   # building
   build-essential cmake ninja-build ccache pkg-config
   glslang-dev spirv-tools spirv-headers libspirv-cross-c-shared-dev
-  libyaml-cpp-dev libxxhash-dev libgmp-dev libssl-dev liblz4-dev liblmdb-dev libpng-dev libmimalloc-dev libboost-dev libzstd-dev
+  libyaml-cpp-dev libxxhash-dev libgmp-dev libssl-dev liblz4-dev liblmdb-dev libcurl4-openssl-dev libpng-dev libmimalloc-dev libboost-dev libzstd-dev
   prometheus-cpp-dev libgrpc++-dev libprotobuf-dev protobuf-compiler protobuf-compiler-grpc
   # running variants
   libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers

@@ -5,6 +5,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <span>
 
 #include "compiler/base/bytes.h"
 #include "compiler/base/digest.h"
@@ -22,6 +23,13 @@ public:
     virtual Result<std::optional<Bytes>> get(Keyspace space, const Digest& key) = 0;
     // A blob whose bytes do not hash to `key` is refused with an Error.
     virtual Status put(Keyspace space, const Digest& key, ByteView bytes) = 0;
+    // An action record that is of use only together with `blobs`, each of which was put or found before.
+    virtual Status put_record(const Digest& key, ByteView record, std::span<const Digest> blobs) {
+        static_cast<void>(blobs);
+        return put(Keyspace::action, key, record);
+    }
+    // These actions will be asked for next, and then the blobs that they name: a store far away fetches them in one go.
+    virtual void expect(std::span<const Digest> actions) { static_cast<void>(actions); }
     // False: nothing that is put here is ever found, so naming and packing it is work for nothing.
     virtual bool keeps() const { return true; }
 };

@@ -124,6 +124,9 @@ private:
 
     // Records first; then each distinct module once, with one unoptimised form for each.
     bool look_up() {
+        std::vector<Digest> asked;
+        for (const Unit& unit : units_) asked.push_back(unit.action);
+        store_.expect(asked);
         if (!jobs_.each(units_.size(), [&](size_t i) {
                 Unit& unit = units_[i];
                 const std::optional<Bytes> bytes = get(Keyspace::action, unit.action);
@@ -307,7 +310,10 @@ private:
         const bool complete =
             jobs_.each(list.size(), [&](size_t i) { put(Keyspace::blob, list[i].first, as_bytes(WordView(*list[i].second))); });
         return complete && jobs_.each(fresh.size(), [&](size_t i) {
-            put(Keyspace::action, fresh[i]->action, write_module_record(fresh[i]->action, fresh[i]->record));
+            const ModuleRecord& record = fresh[i]->record;
+            const Digest needs[] = {record.pruned, record.module};
+            const Status done = store_.put_record(fresh[i]->action, write_module_record(fresh[i]->action, record), needs);
+            if (!done.ok()) store_failed(done.error());
         });
     }
 

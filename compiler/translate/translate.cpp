@@ -23,6 +23,7 @@ struct Unit {
     SlotLayout layout;                // of the module's own resources
     std::vector<Translated> results;  // one per wanted target
     std::vector<uint8_t> hit;
+    std::vector<Digest> actions;
 };
 
 class Translator {
@@ -72,7 +73,7 @@ private:
             auto& units = unit_of_.emplace_back(modules_.list.size(), no_artifact);
             for (const uint32_t m : used) {
                 if (units[m] != no_artifact) continue;
-                Unit unit{m, own_slots(layout, modules_.list[m].reflection), {}, {}};
+                Unit unit{m, own_slots(layout, modules_.list[m].reflection), {}, {}, {}};
                 const auto [at, fresh] = known.emplace(std::pair{m, write_slots(unit.layout)}, units_.size());
                 if (fresh) units_.push_back(std::move(unit));
                 units[m] = static_cast<uint32_t>(at->second);
@@ -100,6 +101,15 @@ private:
 
     bool translate() {
         const std::string versions = tools_.versions();
+        const bool named = jobs_.each(units_.size(), [&](size_t u) {
+            for (const size_t t : wanted_)
+                units_[u].actions.push_back(
+                    artifact_action(versions, options_.targets[t], units_[u].layout, modules_.list[units_[u].module].digest));
+        });
+        if (!named) return false;
+        std::vector<Digest> asked;
+        for (const Unit& unit : units_) asked.insert(asked.end(), unit.actions.begin(), unit.actions.end());
+        store_.expect(asked);
         size_t done = 0;
         return jobs_.each(units_.size(), [&](size_t u) {
             Unit& unit = units_[u];
@@ -108,15 +118,12 @@ private:
             unit.hit.resize(wanted_.size());
             std::vector<Target> misses;
             std::vector<size_t> places;
-            std::vector<Digest> actions;
             for (size_t t = 0; t < wanted_.size(); ++t) {
-                const Target target = options_.targets[wanted_[t]];
-                actions.push_back(artifact_action(versions, target, unit.layout, module.digest));
-                if (auto got = recall(actions.back())) {
+                if (auto got = recall(unit.actions[t])) {
                     unit.results[t] = std::move(*got);
                     unit.hit[t] = 1;
                 } else {
-                    misses.push_back(target);
+                    misses.push_back(options_.targets[wanted_[t]]);
                     places.push_back(t);
                 }
             }
@@ -126,7 +133,7 @@ private:
                     Translated& result = unit.results[places[i]];
                     result = i < fresh.size() ? std::move(fresh[i]) : Translated{{}, "the translator gave nothing"};
                     if (result.text.empty() && result.refusal.empty()) result.refusal = "the text is empty";
-                    remember(actions[places[i]], result);
+                    remember(unit.actions[places[i]], result);
                 }
             }
             const std::lock_guard lock(mutex_);
@@ -154,7 +161,9 @@ private:
             record.text = sha256(as_bytes(result.text));
             put(Keyspace::blob, record.text, as_bytes(result.text));
         }
-        put(Keyspace::action, action, write_artifact_record(action, record));
+        const std::span<const Digest> blobs(&record.text, result.refusal.empty() ? 1 : 0);
+        const Status done = store_.put_record(action, write_artifact_record(action, record), blobs);
+        if (!done.ok()) failed(done.error());
     }
 
     std::optional<Bytes> get(Keyspace space, const Digest& key) {
