@@ -151,6 +151,19 @@ std::string section(const FamilyReport& f) {
     return out + "</details></section>";
 }
 
+// What did not come as expected, of all families.
+std::string contradicted(const Report& report) {
+    std::string out;
+    for (const FamilyReport& f : report.families)
+        for (const Judged& j : f.judged)
+            if (j.verdict != Verdict::confirmed)
+                out += "<li class=\"" + std::string(name_of(j.verdict)) + "\"><a href=\"#f" + std::to_string(f.family.number) +
+                       "\">" + std::to_string(f.family.number) + "</a> " + escaped(j.words) + "</li>";
+    return out.empty() ? out
+                       : "<details class=\"contradicted\"><summary>Not as expected</summary><ul class=\"verdicts\">" + out +
+                             "</ul></details>";
+}
+
 }  // namespace
 
 std::string as_html(const Report& report, const std::vector<Budget>& budgets) {
@@ -171,6 +184,7 @@ std::string as_html(const Report& report, const std::vector<Budget>& budgets) {
         out += "<a href=\"#f" + std::to_string(f.family.number) + "\">" + std::to_string(f.family.number) + " " +
                escaped(f.family.name) + "</a>";
     out += "</nav></header><main>";
+    out += contradicted(report);
     if (!budgets.empty()) out += "<pre class=\"budget\">" + escaped(budget_text(report, budgets)) + "</pre>";
     for (const FamilyReport& f : report.families) out += section(f);
     out += page_foot;

@@ -33,15 +33,17 @@ svg .on-front .dot { fill: var(--accent); stroke: var(--accent); } svg .on-front
 svg .point { cursor: pointer; outline: none; } svg .point:hover .label, svg .point:focus .label { text-decoration: underline; }
 svg .selected .dot { stroke: var(--ink); stroke-width: 3; } svg .selected .label { text-decoration: underline; }
 .wide { overflow-x: auto; margin: 10px 0; } table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 13px; }
-th, td { padding: 4px 8px; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--line); }
+th, td { padding: 4px 7px; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--line); }
 th:first-child { text-align: left; position: sticky; left: 0; background: var(--panel); }
-thead th { color: var(--faint); font-weight: 600; } tbody tr { cursor: pointer; }
+thead th { color: var(--faint); font-weight: 600; white-space: normal; vertical-align: bottom; line-height: 1.25; }
+thead th:first-child { white-space: nowrap; } tbody tr { cursor: pointer; }
 tr.selected > *, tr.selected th:first-child { background: var(--mark); }
 .pictures { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 268px), 1fr)); gap: 12px; }
 figure { margin: 0; border: 2px solid transparent; border-radius: 6px; padding: 4px; cursor: pointer; }
 figure.truth { cursor: default; } figure.selected { border-color: var(--accent); background: var(--mark); }
 figure div { display: grid; grid-template-columns: 1fr 1fr; gap: 4px; } figure.truth img { width: calc(50% - 2px); }
 img { width: 100%; image-rendering: pixelated; display: block; } figcaption { font-size: 13px; }
+.contradicted { background: var(--panel); border: 1px solid var(--line); border-radius: 8px; padding: 0 16px 10px; }
 .verdicts { padding-left: 1.2em; } .verdicts li { margin: 3px 0; }
 .confirmed::marker { content: "\2713  "; color: var(--good); } .falsified::marker { content: "\2717  "; color: var(--bad); }
 .undecided::marker { content: "~  "; color: var(--faint); } .falsified { color: var(--bad); }

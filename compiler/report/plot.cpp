@@ -59,14 +59,14 @@ std::string escaped(const std::string& text) {
     return out;
 }
 
-Box label_size(const std::string& label) {
+Box label_size(const std::string& label, bool bold) {
     size_t letters = 0;
     for (const char c : label) letters += (static_cast<unsigned char>(c) & 0xc0u) != 0x80u ? 1 : 0;
-    return {0, 0, 7.0 * static_cast<double>(letters) + 4.0, 14.0};
+    return {0, 0, (bold ? 8.2 : 7.4) * static_cast<double>(letters) + 4.0, 15.0};
 }
 
 std::vector<Box> place_labels(const std::vector<std::string>& labels, const std::vector<std::pair<double, double>>& points,
-                              const Box& area) {
+                              const Box& area, const std::vector<bool>& bold) {
     constexpr double radius = 6.0;
     std::vector<Box> taken, out(labels.size());
     for (const auto& [x, y] : points) taken.push_back({x - radius, y - radius, 2 * radius, 2 * radius});
@@ -80,7 +80,7 @@ std::vector<Box> place_labels(const std::vector<std::string>& labels, const std:
     }
     std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return neighbours[a] > neighbours[b]; });
     for (const size_t i : order) {
-        const Box size = label_size(labels[i]);
+        const Box size = label_size(labels[i], i < bold.size() && bold[i]);
         const auto [x, y] = points[i];
         bool found = false;
         for (int step = 0; step < 14 && !found; ++step) {
@@ -157,7 +157,9 @@ std::string plot_svg(const std::string& title, const std::string& error_name, co
 
     std::vector<std::pair<double, double>> points;
     std::vector<std::string> labels;
+    std::vector<bool> bold;
     for (const Mark& m : drawn) {
+        bold.push_back(m.front);
         points.emplace_back(x.at(m.time), m.error <= 0 ? zero_y : y.at(m.error));
         labels.push_back(m.label);
     }
@@ -172,7 +174,7 @@ std::string plot_svg(const std::string& title, const std::string& error_name, co
     }
     if (!path.empty()) s += "<path class=\"front\" d=\"" + path + "\"/>";
 
-    const std::vector<Box> boxes = place_labels(labels, points, {left + 2, top, width - left - right - 4, floor_y - top});
+    const std::vector<Box> boxes = place_labels(labels, points, {left + 2, top, width - left - right - 4, floor_y - top}, bold);
     for (size_t i = 0; i < drawn.size(); ++i) {
         const auto [px, py] = points[i];
         s += std::string("<g class=\"point") + (drawn[i].front ? " on-front" : "") +
@@ -188,8 +190,10 @@ std::string plot_svg(const std::string& title, const std::string& error_name, co
         s += "<circle class=\"reach\" cx=\"" + number(px) + "\" cy=\"" + number(py) + "\" r=\"13\"/><circle class=\"dot\" cx=\"" +
              number(px) + "\" cy=\"" + number(py) + "\" r=\"5\"/>";
         if (b.w > 0)
-            s += "<text class=\"label\" x=\"" + number(b.x + 2) + "\" y=\"" + number(b.y + 11) + "\">" + escaped(labels[i]) +
-                 "</text>";
+            // Held where it meets its point, since a font may be narrower than thought.
+            s += (b.x + b.w <= px ? "<text class=\"label\" text-anchor=\"end\" x=\"" + number(b.x + b.w - 2)
+                                  : "<text class=\"label\" x=\"" + number(b.x + 2)) +
+                 "\" y=\"" + number(b.y + 11.5) + "\">" + escaped(labels[i]) + "</text>";
         s += "</g>";
     }
     return s + "</svg>";

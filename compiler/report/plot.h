@@ -19,12 +19,12 @@ struct Box {
     bool overlaps(const Box& o) const { return x < o.x + o.w && o.x < x + w && y < o.y + o.h && o.y < y + h; }
 };
 
-// Width and height that a label takes, in the plot's units.
-Box label_size(const std::string& label);
+// Width and height that a label takes in a wide font, in the plot's units. Labels of the front are bold.
+Box label_size(const std::string& label, bool bold = false);
 
 // A place for each label near its point, inside `area`, over no point and no other label. A label without a place gets w = 0.
 std::vector<Box> place_labels(const std::vector<std::string>& labels, const std::vector<std::pair<double, double>>& points,
-                              const Box& area);
+                              const Box& area, const std::vector<bool>& bold = {});
 
 // Errors of 0 stand on a line of their own below the smallest other one. Colours come from the page's CSS classes.
 std::string plot_svg(const std::string& title, const std::string& error_name, const std::vector<Mark>& marks);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Opens the page of kiln report in headless Chromium, on a wide and on a narrow screen, light and dark, and clicks it.
 
-usage: page.py KILN [SCREENSHOTS]. Speaks to chromedriver by the WebDriver protocol, so Python's own library is enough.
+usage: page.py KILN [--all] [SCREENSHOTS]. Two families are measured, or with --all every one. Speaks to chromedriver by the WebDriver protocol, so Python's own library is enough.
 """
 import base64
 import json
@@ -87,11 +87,15 @@ def overlaps(browser):
         return out;""")
 
 
-def run(kiln, pictures):
+def run(kiln, families, pictures):
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([kiln, "report", "--quick", "--family", "4", "--family", "5", "-o", folder], check=True, stdout=subprocess.DEVNULL)
+        chosen = [word for family in families for word in ("--family", family)]
+        subprocess.run([kiln, "report", "--quick", *chosen, "-o", folder], check=True, stdout=subprocess.DEVNULL)
         page = pathlib.Path(folder, "report.html")
         report = json.loads(pathlib.Path(folder, "report.json").read_text())
+        fresnel = next(f for f in report["families"] if f["number"] == 4)
+        if not families:
+            check([f["number"] for f in report["families"]] == list(range(1, 14)), "thirteen families")
         browser = Browser(folder + "/profile")
         try:
             grounds = {}
@@ -104,6 +108,19 @@ def run(kiln, pictures):
                 check(wide <= width, f"{name}: the page is {wide} wide and the screen {width}")
                 met = overlaps(browser)
                 check(not met, f"{name}: labels overlap: {met}")
+                # Every part of every family is whole when its turn comes: as many points as it has measured, labels apart.
+                for f in report["families"]:
+                    for part in range(len(f["scenes"]) + 1):
+                        here = f"f{f['number']}-{part}"
+                        browser.js("document.querySelector(arguments[0]).click()", f"[data-part='{here}']")
+                        check(browser.js("return !document.getElementById(arguments[0]).hidden", here), f"{name}: {here} is not shown")
+                        rows = browser.js("return document.querySelectorAll('#' + arguments[0] + ' tbody tr').length", here)
+                        check(rows == len(f["together"]["members"]), f"{name}: {here} has {rows} rows")
+                        met = overlaps(browser)
+                        check(not met, f"{name}: {here}: labels overlap: {met}")
+                        wide = browser.js("return document.documentElement.scrollWidth")
+                        check(wide <= width, f"{name}: {here}: the page is {wide} wide")
+                    browser.js("document.querySelector(arguments[0]).click()", f"[data-part='f{f['number']}-0']")
                 grounds[name] = browser.js("return getComputedStyle(document.body).backgroundColor")
                 small = browser.js("return Array.from(document.querySelectorAll('svg.plot .label')).filter(e => e.getClientRects().length)"
                                    ".reduce((m, e) => Math.min(m, e.getBoundingClientRect().height), 99)")
@@ -112,7 +129,7 @@ def run(kiln, pictures):
                 # A point selects its row; what it says is what report.json says.
                 browser.click("#f4-0 .point[data-row='f4-0-1'] .dot")
                 chosen = browser.js("return Array.from(document.querySelectorAll('tr.selected')).map(r => r.cells[0].textContent)")
-                check(chosen == [report["families"][0]["together"]["members"][1]["member"]], f"{name}: selected {chosen}")
+                check(chosen == [fresnel["together"]["members"][1]["member"]], f"{name}: selected {chosen}")
                 check(browser.js("return document.querySelectorAll('#f4-0 .point.selected').length") == 2, f"{name}: the point of both plots")
                 # A scene's part takes the place of the other, and a picture selects its point and row.
                 browser.click("[data-part='f4-1']")
@@ -142,4 +159,5 @@ def run(kiln, pictures):
 
 
 if __name__ == "__main__":
-    run(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else None)
+    words = [w for w in sys.argv[2:] if w != "--all"]
+    run(sys.argv[1], [] if "--all" in sys.argv else ["4", "5"], words[0] if words else None)
