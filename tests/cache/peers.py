@@ -14,8 +14,7 @@ KILN = os.environ["KILN"]
 
 
 def fail(text):
-    print("FAILED:", text, file=sys.stderr)
-    sys.exit(1)
+    raise SystemExit("FAILED: " + text)
 
 
 def check(condition, text):
