@@ -22,9 +22,10 @@ THIRD_PARTY = {
     # Beast's connection is a template over its stream (TCP, TLS), hence a header beside the one source file.
     "boost/": {"cache/server/http_server.cpp", "cache/server/http_connection.h"},
     # Services derive from generated classes, a source each; what they share is in the header.
-    "grpcpp/": {"cache/server/grpc_call.h", "cache/server/grpc_server.cpp"},
-    "remote_execution": {"cache/server/grpc_call.h"},
-    "bytestream": {"cache/server/grpc_stream.cpp"},
+    "grpcpp/": {"cache/server/grpc_call.h", "cache/server/grpc_server.cpp", "cache/client/grpc_calls.h"},
+    "grpc/": {"cache/client/grpc_remote.cpp"},
+    "remote_execution": {"cache/server/grpc_call.h", "cache/client/grpc_remote.cpp"},
+    "bytestream": {"cache/server/grpc_stream.cpp", "cache/client/grpc_calls.h"},
     "prometheus/": {"cache/server/metrics_page.cpp"},
     "zstd": {"cache/zstd.cpp"},
     "gmp": {"compiler/space/count.cpp"},

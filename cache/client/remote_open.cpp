@@ -3,8 +3,11 @@
 #include <cstdlib>
 
 #include "cache/client/chaos_remote.h"
+#include "cache/client/grpc_remote.h"
 #include "cache/client/http_remote.h"
 #include "cache/client/private_file.h"
+#include "compiler/base/files.h"
+#include "compiler/base/jobs.h"
 
 namespace kiln {
 
@@ -27,7 +30,18 @@ Result<std::unique_ptr<RemoteStore>> open_remote_store(const RemoteUrl& url, con
         http.ca_file = options.ca_file;
         return HttpRemote::open(url, http, options.limits);
     }
-    return Error{Fault::usage, "cache '" + url.text() + "': this kiln does not speak " + url.scheme};
+    GrpcRemoteOptions grpc;
+    grpc.timeout = options.timeout;
+    grpc.token = options.token;
+    grpc.interrupted = &interrupted;
+    if (!options.ca_file.empty()) {
+        DiskFiles files;
+        const auto pem = files.read(options.ca_file);
+        KILN_TRY(pem);
+        if (!pem->has_value()) return input_error("cache '" + url.text() + "': no certificates at '" + options.ca_file + "'");
+        grpc.authority = **pem;
+    }
+    return open_grpc_remote(url, grpc, options.limits);
 }
 
 Result<std::unique_ptr<RemoteCache>> open_remote_cache(const RemoteUrl& url, const RemoteOptions& options) {
