@@ -71,6 +71,7 @@ struct HeadCheck {
     HttpHead head;
 };
 HeadCheck check_head(const http::request_parser<http::buffer_body>& parser);
+bool has_folded_line(std::string_view head);
 std::string response_head(const HttpResponse& response, bool close);
 
 template <class Stream>
@@ -134,9 +135,11 @@ private:
         if (buffer_.size() != 0) {
             beast::error_code failed;
             const size_t used = parser_->put(buffer_.data(), failed);
+            // Beast joins folded lines; another server might see another field.
+            const bool folded = has_folded_line({static_cast<const char*>(buffer_.data().data()), used});
             buffer_.consume(used);
-            if (parser_->is_header_done()) return on_head();
-            if (failed && failed != http::error::need_more) {
+            if (parser_->is_header_done() && !folded) return on_head();
+            if (folded || (failed && failed != http::error::need_more)) {
                 ++shared_.malformed;
                 unread_ = true;
                 return respond(plain(failed == http::error::header_limit ? 431 : 400));

@@ -281,6 +281,10 @@ HeadCheck check_head(const http::request_parser<http::buffer_body>& parser) {
     return check;
 }
 
+bool has_folded_line(std::string_view head) {
+    return head.find("\n ") != std::string_view::npos || head.find("\n\t") != std::string_view::npos;
+}
+
 std::string response_head(const HttpResponse& response, bool close) {
     std::string head;
     head.reserve(320);

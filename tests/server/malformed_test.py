@@ -37,6 +37,8 @@ def heads(binary):
         "NUL in the target": b"GET /cas/\0 HTTP/1.1\r\nHost: h\r\n\r\n",
         "NUL in a value": b"GET /healthz HTTP/1.1\r\nHost: h\r\nX: a\0b\r\n\r\n",
         "space before the colon": b"GET /healthz HTTP/1.1\r\nHost : h\r\n\r\n",
+        "folded line": request("PUT", put, headers=("Host: h", "Transfer-Encoding:", " chunked"), body=b"0\r\n\r\n"),
+        "folded by a tab": request(headers=("Host: h", "X: a", "\tb")),
         "no colon": b"GET /healthz HTTP/1.1\r\nHost: h\r\nnonsense\r\n\r\n",
         "no Host": request(headers=("X: y",)),
         "two Hosts": request(headers=("Host: a", "Host: b")),
