@@ -14,6 +14,7 @@ RemoteAnswer answer_of(HttpRequest::Method method, HttpReply&& reply) {
     const bool puts = method == HttpRequest::Method::put;
     const int status = reply.status;
     if (status == 0) return {Kind::failed, {}, std::move(reply.problem), reply.timed_out};
+    if (puts && reply.kept_first) return {Kind::absent, {}, {}, false};
     if (status == 200 || (puts && (status == 201 || status == 202 || status == 204)))
         return {Kind::found, std::move(reply.body), {}, false};
     if (puts ? status == 409 : status == 404 || status == 410) return {Kind::absent, {}, {}, false};

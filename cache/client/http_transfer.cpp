@@ -11,6 +11,7 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <string_view>
 #include <thread>
 
 #include "compiler/base/jobs.h"
@@ -143,9 +144,11 @@ struct HttpTransfer::Engine {
         return {};
     }
 
-    static size_t on_header(const char*, size_t size, size_t count, void* user) {
+    static size_t on_header(const char* line, size_t size, size_t count, void* user) {
         Slot& slot = *static_cast<Slot*>(user);
         slot.headers += size * count;
+        if (std::string_view(line, size * count).starts_with("X-Kiln-Kept: first"))
+            slot.batch->replies[slot.index].kept_first = true;
         if (slot.headers <= most_headers) return size * count;
         slot.own_problem = "headers longer than 64 KiB";
         return 0;

@@ -38,6 +38,7 @@ struct HttpReply {
     Bytes body;      // of a get that was answered 200
     std::string problem;
     bool timed_out = false;
+    bool kept_first = false;  // of a put: kiln-cached says that it keeps other bytes
 };
 
 class HttpTransfer {
