@@ -1,4 +1,4 @@
-"""Bazel as a client of kiln-cached, whichever Bazel and protocol."""
+"""Bazel as a client of kiln-cached, over either protocol."""
 import re
 
 from cached import Cached, check, equal, key
