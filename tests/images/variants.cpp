@@ -161,7 +161,7 @@ std::vector<Values> pairwise(const std::string& manifest, const std::string& sha
     std::set<std::array<size_t, 4>> seen;
     reference::Random random(seed);
     Diagram& diagram = *space->diagram;
-    const auto digits = [&](size_t axis) { return static_cast<uint32_t>(space->axes[axis].values.size()); };
+    const auto digits = [&axes = space->axes](size_t axis) { return static_cast<uint32_t>(axes[axis].values.size()); };
     for (uint32_t a = 0; a < space->axes.size(); ++a)
         for (uint32_t b = a; b < space->axes.size(); ++b)
             for (uint32_t i = 0; i < digits(a); ++i)
