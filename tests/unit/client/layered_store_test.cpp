@@ -263,6 +263,19 @@ TEST(LayeredStore, ATokenThatMayNotReadIsNotAskedAgain) {
     EXPECT_EQ(one.counters().problem, "it answered 401");
 }
 
+TEST(LayeredStore, ARecordThatTheServerHasOtherwiseIsCounted) {
+    Machine one;
+    one.server->meddle = [](const char* call, const Digest&, RemoteAnswer& answer) {
+        if (std::string(call) == "put_actions") answer = {Kind::absent, {}, {}, false};
+    };
+    Entry("a").put(*one.store);
+    one.store->finish();
+    EXPECT_EQ(one.counters().kept_first, 1u);
+    EXPECT_EQ(one.counters().sent, 1u);
+    EXPECT_EQ(one.counters().not_sent, 0u);
+    EXPECT_EQ(one.counters().failures, 0u);
+}
+
 TEST(LayeredStore, TheQueueIsBounded) {
     LayeredOptions options;
     options.queue.bytes = 1000;
