@@ -46,4 +46,6 @@ build dev
 if [ "$full" = yes ]; then
   git ls-files 'compiler/*.cpp' 'cache/*.cpp' 'tools/*.cpp' | xargs -P "$(nproc)" -n 4 clang-tidy -p build/dev --quiet
 fi
-ctest --preset dev -j "$(nproc)"
+long=()
+[ "$full" = no ] || long=(-C full)
+ctest --preset dev "${long[@]}" -j "$(nproc)"

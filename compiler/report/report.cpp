@@ -13,8 +13,8 @@ namespace kiln::report {
 namespace {
 
 constexpr unsigned repeats = 31;
-constexpr double least_ms = 2.2;  // 2 and some room, since loops are chosen from one short dispatch
-constexpr uint32_t timed_pixels = 256;
+constexpr double least_ms = 2.2;       // 2 and some room, since loops are chosen from one short dispatch
+constexpr uint32_t timed_pixels = 64;  // few, so that a dear shader's dispatch ends within the host's time slice
 
 Error stopped() { return environment_error("interrupted"); }
 
