@@ -282,7 +282,7 @@ void pass_table(Build& build, const BuildOptions& options, PassContext& context)
     {
         const Timed timed(build, "modules");
         build.modules = build_modules(build.stages, context.store, context.tools, context.jobs, context.progress,
-                                      source_lines(context.files, manifest.folder));
+                                      source_lines(context.files, manifest.folder), context.elsewhere);
         build.work.store_failures += build.modules.store_failures;
         append_rebased(build, build.modules.diags);
         build.counts.raw = build.modules.raw;
@@ -304,8 +304,8 @@ void pass_table(Build& build, const BuildOptions& options, PassContext& context)
     {
         const Timed timed(build, "artifacts");
         const TranslateOptions how{manifest.targets, options.parse_back};
-        build.artifacts =
-            translate_modules(build.stages, build.modules, how, context.store, context.tools, context.jobs, context.progress);
+        build.artifacts = translate_modules(build.stages, build.modules, how, context.store, context.tools, context.jobs,
+                                            context.progress, context.elsewhere);
         build.diags.append(build.artifacts.diags);
         build.work.translated += build.artifacts.translated;
         build.work.cache_hits += build.artifacts.cache_hits;

@@ -32,7 +32,8 @@ struct PassContext {
     Store& store;
     Toolchain& tools;
     const Jobs& jobs;
-    Progress progress;  // may be empty
+    Progress progress;               // may be empty
+    Elsewhere* elsewhere = nullptr;  // may do part of the work on other machines
 };
 
 struct BuildWork {

@@ -19,7 +19,7 @@ double peak_mebibytes() {
     return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-std::string as_json(const Build& build, const RemoteCache* remote) {
+std::string as_json(const Build& build, const RemoteCache* remote, const Execution* execution) {
     Json json;
     json.object().key("counts").object();
     json.text("declared", build.counts.declared.decimal()).text("legal", build.counts.legal.decimal());
@@ -37,6 +37,7 @@ std::string as_json(const Build& build, const RemoteCache* remote) {
     for (const auto& [step, ms] : build.ms) json.number(step, ms);
     json.end();
     if (remote != nullptr) remote_json(json, *remote);
+    if (execution != nullptr) execution_json(json, *execution);
     json.end();
     return json.take();
 }
@@ -129,9 +130,14 @@ Status publish(Files& files, const Args& args, const Build& build, const std::st
 }
 
 int run_build(const Args& args) {
-    if (!args.has("--output")) return print_error({Fault::usage, "kiln build: where to? give -o TABLE.kiln"});
+    const bool plans = args.has("--distributed-plan");
+    if (!args.has("--output") && !plans) return print_error({Fault::usage, "kiln build: where to? give -o TABLE.kiln"});
     const auto options = build_options(args);
     if (!options.ok()) return print_error(options.error());
+    if (plans) {
+        auto session = Session::open(args);
+        return session.ok() ? print_plan(args, *options, *(*session)->context) : print_error(session.error());
+    }
     const std::vector<Output> outputs = outputs_of(args);
     std::vector<std::string> named = options->scenes;
     named.push_back(options->manifest);
@@ -145,11 +151,16 @@ int run_build(const Args& args) {
     if (const Status status = publish((*session)->files, args, build, output); !status.ok()) return print_error(status.error());
     (*session)->finish();
     const RemoteCache* remote = (*session)->remote ? &(*session)->remote->remote() : nullptr;
-    const std::string report = args.has("--json") || args.has("--report-json") ? as_json(build, remote) : std::string();
+    const Execution* execution = (*session)->execution.get();
+    if (execution != nullptr)
+        if (const std::string warning = execution_warning(*execution); !warning.empty()) print_note("warning: " + warning);
+    const std::string report =
+        args.has("--json") || args.has("--report-json") ? as_json(build, remote, execution) : std::string();
     if (args.has("--report-json"))
         if (const Status status = (*session)->files.write(args.value("--report-json"), as_bytes(report)); !status.ok())
             return print_error(status.error());
     if (args.has("--json")) return finish(report);
+    if (execution != nullptr) return finish(as_text(build, output) + execution_text(*execution));
     return finish(as_text(build, output) + (remote != nullptr ? remote_text(*remote) : std::string()));
 }
 
@@ -157,7 +168,7 @@ int run_build(const Args& args) {
 
 const Verb verb_build{"build",
                       "MANIFEST -o T.kiln [--scene S]… [--target T]… [--cache DIR|URL]… [--cache-size SIZE] [-j N] [-g] "
-                      "[--parse-back] [--header F] [--depfile D] "
+                      "[--parse-back] [--execute ENGINE] [--distributed-plan] [--header F] [--depfile D] "
                       "[--json | --report-json F]",
                       "compile a manifest into a variant table and its proof",
                       1,
@@ -170,6 +181,10 @@ const Verb verb_build{"build",
                        option_cache_timeout,
                        option_cache_read_only,
                        option_chaos,
+                       option_execute,
+                       option_execute_timeout,
+                       option_plan,
+                       option_workers,
                        option_jobs,
                        {"-g", nullptr, nullptr, "keep names and lines for debuggers; layout then tells classes apart"},
                        {"--parse-back", nullptr, nullptr, "parse and link every emitted GLSL and ESSL text again"},

@@ -12,7 +12,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 # The folders of compiler/ in the order of the data: each may include itself and what stands before it. Files directly in
 # compiler/ are the pass.
-ORDER = ["base", "runtime", "manifest", "space", "split", "reflect", "toolchain", "modules", "translate", "interfaces", "table", "pass",
+ORDER = ["base", "runtime", "manifest", "space", "split", "reflect", "toolchain", "modules", "translate", "batch", "interfaces", "table", "pass",
          "bake", "validate", "device", "report"]
 
 # Third-party header prefix -> the files that may include it.

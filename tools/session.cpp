@@ -102,6 +102,8 @@ Result<std::unique_ptr<Session>> Session::open(const Args& args) {
             print_note("warning: building without a cache: " + store.error().message);
         }
     }
+    // What comes back from an engine has to be kept somewhere until the pass asks for it.
+    if (!session->store && args.has("--execute")) session->store = std::make_unique<MemoryStore>();
     if (!session->store) session->store = std::make_unique<NoStore>();
     Store* store = session->store.get();
     if (!places->url.empty()) {
@@ -120,8 +122,12 @@ Result<std::unique_ptr<Session>> Session::open(const Args& args) {
         store = session->chaos.get();
     }
     session->tools = make_toolchain();
+    auto execution = Execution::open(args, *store, *session->tools);
+    KILN_TRY(execution);
+    session->execution = std::move(*execution);
     session->context =
-        std::make_unique<PassContext>(PassContext{session->files, *store, *session->tools, *session->jobs, terminal_progress()});
+        std::make_unique<PassContext>(PassContext{session->files, *store, *session->tools, *session->jobs, terminal_progress(),
+                                                  session->execution ? session->execution->distributor.get() : nullptr});
     return session;
 }
 

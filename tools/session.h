@@ -7,6 +7,7 @@
 #include "cache/disk_options.h"
 #include "compiler/pass.h"
 #include "tools/args.h"
+#include "tools/execute.h"
 #include "tools/remote.h"
 
 namespace kiln {
@@ -18,6 +19,7 @@ struct Session {
     std::unique_ptr<ChaosStore> chaos;     // in front of both, when --chaos asks for it
     std::unique_ptr<Toolchain> tools;
     std::unique_ptr<Jobs> jobs;
+    std::unique_ptr<Execution> execution;  // with --execute
     std::unique_ptr<PassContext> context;
 
     // Opens the caches that --cache names; one that cannot be opened is a warning.

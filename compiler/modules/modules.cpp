@@ -62,8 +62,8 @@ Digest digest_of(const Words& words) { return sha256(as_bytes(WordView(words)));
 class Builder {
 public:
     Builder(const std::vector<StageClasses>& stages, Store& store, Toolchain& tools, const Jobs& jobs, const Progress& progress,
-            const SourceLines& lines)
-        : stages_(stages), store_(store), tools_(tools), jobs_(jobs), progress_(progress), lines_(lines) {}
+            const SourceLines& lines, Elsewhere* elsewhere)
+        : stages_(stages), store_(store), tools_(tools), jobs_(jobs), progress_(progress), lines_(lines), elsewhere_(elsewhere) {}
 
     Modules run() {
         collect();
@@ -126,6 +126,11 @@ private:
     bool look_up() {
         std::vector<Digest> asked;
         for (const Unit& unit : units_) asked.push_back(unit.action);
+        if (elsewhere_) {
+            std::vector<ModuleQuestion> questions;
+            for (const Unit& unit : units_) questions.push_back({unit.stage, unit.options, unit.text, unit.action});
+            elsewhere_->modules(questions);
+        }
         store_.expect(asked);
         if (!jobs_.each(units_.size(), [&](size_t i) {
                 Unit& unit = units_[i];
@@ -343,6 +348,7 @@ private:
     const Jobs& jobs_;
     const Progress& progress_;
     const SourceLines& lines_;
+    Elsewhere* const elsewhere_;
 
     std::vector<Unit> units_;
     std::vector<std::vector<size_t>> unit_of_;  // [stage][class]
@@ -357,8 +363,8 @@ private:
 }  // namespace
 
 Modules build_modules(const std::vector<StageClasses>& stages, Store& store, Toolchain& tools, const Jobs& jobs,
-                      const Progress& progress, const SourceLines& lines) {
-    return Builder(stages, store, tools, jobs, progress, lines).run();
+                      const Progress& progress, const SourceLines& lines, Elsewhere* elsewhere) {
+    return Builder(stages, store, tools, jobs, progress, lines, elsewhere).run();
 }
 
 }  // namespace kiln

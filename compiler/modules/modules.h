@@ -6,6 +6,7 @@
 
 #include "compiler/base/jobs.h"
 #include "compiler/base/store.h"
+#include "compiler/modules/elsewhere.h"
 #include "compiler/split/split.h"
 #include "compiler/toolchain/toolchain.h"
 
@@ -45,6 +46,6 @@ using SourceLines = std::function<std::string(const std::string& file, uint32_t 
 // kept in the store's records and shown again on a hit. A store that fails costs time and a warning, never the build. The result
 // depends on the classes, the options and the tools alone: neither on threads nor on what the store holds.
 Modules build_modules(const std::vector<StageClasses>& stages, Store& store, Toolchain& tools, const Jobs& jobs,
-                      const Progress& progress, const SourceLines& lines = {});
+                      const Progress& progress, const SourceLines& lines = {}, Elsewhere* elsewhere = nullptr);
 
 }  // namespace kiln

@@ -29,7 +29,7 @@ struct Unit {
 class Translator {
 public:
     Translator(const std::vector<StageClasses>& stages, const Modules& modules, const TranslateOptions& options, Store& store,
-               Toolchain& tools, const Jobs& jobs, const Progress& progress)
+               Toolchain& tools, const Jobs& jobs, const Progress& progress, Elsewhere* elsewhere)
         : stages_(stages),
           modules_(modules),
           options_(options),
@@ -37,6 +37,7 @@ public:
           tools_(tools),
           jobs_(jobs),
           progress_(progress),
+          elsewhere_(elsewhere),
           shaders_(shader_stages(stages, modules)) {
         for (size_t t = 0; t < options.targets.size(); ++t)
             if (options.targets[t] != Target::spirv) wanted_.push_back(t);
@@ -109,6 +110,14 @@ private:
         if (!named) return false;
         std::vector<Digest> asked;
         for (const Unit& unit : units_) asked.insert(asked.end(), unit.actions.begin(), unit.actions.end());
+        if (elsewhere_) {
+            std::vector<Target> targets;
+            for (const size_t t : wanted_) targets.push_back(options_.targets[t]);
+            std::vector<ArtifactQuestion> questions;
+            for (const Unit& unit : units_)
+                questions.push_back({modules_.list[unit.module].words, &unit.layout, targets, unit.actions});
+            elsewhere_->artifacts(questions);
+        }
         store_.expect(asked);
         size_t done = 0;
         return jobs_.each(units_.size(), [&](size_t u) {
@@ -239,6 +248,7 @@ private:
     Toolchain& tools_;
     const Jobs& jobs_;
     const Progress& progress_;
+    Elsewhere* const elsewhere_;
     std::vector<ShaderStages> shaders_;
     std::vector<size_t> wanted_;  // indices of targets that are not spirv
     std::vector<Unit> units_;
@@ -251,8 +261,8 @@ private:
 }  // namespace
 
 Artifacts translate_modules(const std::vector<StageClasses>& stages, const Modules& modules, const TranslateOptions& options,
-                            Store& store, Toolchain& tools, const Jobs& jobs, const Progress& progress) {
-    return Translator(stages, modules, options, store, tools, jobs, progress).run();
+                            Store& store, Toolchain& tools, const Jobs& jobs, const Progress& progress, Elsewhere* elsewhere) {
+    return Translator(stages, modules, options, store, tools, jobs, progress, elsewhere).run();
 }
 
 }  // namespace kiln

@@ -57,6 +57,7 @@ SlotLayout assign_slots(const std::vector<const Reflection*>& modules);
 // with the variants that it hits; with parse_back, a text that glslang does not accept is an error. Depends on its input
 // alone: neither on threads nor on what the store holds.
 Artifacts translate_modules(const std::vector<StageClasses>& stages, const Modules& modules, const TranslateOptions& options,
-                            Store& store, Toolchain& tools, const Jobs& jobs, const Progress& progress);
+                            Store& store, Toolchain& tools, const Jobs& jobs, const Progress& progress,
+                            Elsewhere* elsewhere = nullptr);
 
 }  // namespace kiln

@@ -1,0 +1,168 @@
+#include "tools/execute.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+
+#include "cache/execute/local_engine.h"
+#include "cache/execute/slurm_engine.h"
+#include "tools/console.h"
+#include "tools/session.h"
+
+namespace kiln {
+namespace {
+
+std::vector<std::string> split(const std::string& text, char at) {
+    std::vector<std::string> out(1);
+    for (const char c : text) {
+        if (c == at)
+            out.emplace_back();
+        else
+            out.back() += c;
+    }
+    return out;
+}
+
+Result<std::unique_ptr<Engine>> open_engine(const std::string& spec) {
+    if (spec.starts_with("local:")) {
+        const std::string count = spec.substr(6);
+        const int n =
+            count.size() < 5 && count.find_first_not_of("0123456789") == std::string::npos ? std::atoi(count.c_str()) : 0;
+        if (n < 1) return Error{Fault::usage, "--execute local:N takes a number of processes from 1 on"};
+        return std::unique_ptr<Engine>(std::make_unique<LocalEngine>(static_cast<size_t>(n)));
+    }
+    if (spec.starts_with("slurm:")) {
+        std::vector<std::string> words = split(spec.substr(6), ',');
+        const std::string folder = words.front();
+        words.erase(words.begin());
+        if (folder.empty() || folder.front() != '/')
+            return Error{Fault::usage, "--execute slurm:FOLDER takes the absolute name of a folder that all nodes see"};
+        return std::unique_ptr<Engine>(std::make_unique<SlurmEngine>(folder, std::move(words)));
+    }
+    return Error{Fault::usage, "--execute takes local:N or slurm:FOLDER[,SBATCH-OPTION]…, not '" + spec + "'"};
+}
+
+std::string worker_program() {
+    if (const char* named = std::getenv("KILN_WORKER"); named != nullptr && *named != '\0') return named;
+    std::error_code problem;
+    return (std::filesystem::read_symlink("/proc/self/exe", problem).parent_path() / "kiln-worker").string();
+}
+
+std::string seconds(double ms) {
+    char out[32];
+    std::snprintf(out, sizeof out, "%.2f s", ms / 1000);
+    return out;
+}
+
+}  // namespace
+
+const Option option_execute{"--execute", nullptr, "ENGINE",
+                            "compile and translate on an engine: local:N (processes), slurm:FOLDER[,OPTION]…"};
+const Option option_execute_timeout{"--execute-timeout", nullptr, "S",
+                                    "how long a step may take there before the rest is done here; default 600"};
+const Option option_plan{"--distributed-plan", nullptr, nullptr,
+                         "say what --execute would send and how long it would take; writes nothing"};
+const Option option_workers{"--workers", nullptr, "N", "with --distributed-plan: model this many workers instead of 1 to 64"};
+
+Result<std::unique_ptr<Execution>> Execution::open(const Args& args, Store& store, Toolchain& tools) {
+    if (!args.has("--execute")) return std::unique_ptr<Execution>();
+    auto engine = open_engine(args.value("--execute"));
+    KILN_TRY(engine);
+    const auto timeout = args.number("--execute-timeout", 600, 1, 86400);
+    KILN_TRY(timeout);
+    auto out = std::make_unique<Execution>();
+    out->engine = std::move(*engine);
+    auto distributor = Distributor::make(*out->engine, store, tools, worker_program(), std::chrono::seconds(*timeout));
+    KILN_TRY(distributor);
+    out->distributor = std::move(*distributor);
+    out->distributor->progress = terminal_progress();
+    return out;
+}
+
+void execution_json(Json& json, const Execution& execution) {
+    const DistributionCounts& c = execution.distributor->counts();
+    json.key("execution").object().text("engine", execution.engine->name());
+    json.number("questions", c.questions).number("answered", c.answered).number("batches", c.batches);
+    json.number("failed_batches", c.failed_batches).number("cached_batches", c.cached_batches);
+    json.number("bytes_sent", c.bytes_out).number("bytes_received", c.bytes_in).end();
+}
+
+std::string execution_text(const Execution& execution) {
+    const DistributionCounts& c = execution.distributor->counts();
+    const auto n = [](uint64_t v) { return Count(v).grouped(); };
+    return "  " + execution.engine->name() + " answered " + n(c.answered) + " of " + n(c.questions) + " in " + n(c.batches) +
+           " batches (" + n(c.failed_batches) + " failed, " + n(c.cached_batches) + " from its cache), " + n(c.bytes_out) +
+           " bytes out, " + n(c.bytes_in) + " back\n";
+}
+
+std::string execution_warning(const Execution& execution) {
+    const DistributionCounts& c = execution.distributor->counts();
+    if (c.failed_batches == 0) return {};
+    return execution.engine->name() + " failed " + std::to_string(c.failed_batches) + " of " + std::to_string(c.batches) +
+           " batches, which were done here: " + c.first_problem;
+}
+
+int print_plan(const Args& args, const BuildOptions& options, PassContext& context) {
+    const auto workers = args.number("--workers", 0, 1, 100'000);
+    if (!workers.ok()) return print_error(workers.error());
+    NoStore none;
+    DistributionPlan plan(context.tools.versions());
+    PassContext cold{context.files, none, context.tools, context.jobs, context.progress, &plan};
+    const Build build = run_pass(options, cold);
+    if (const int code = report_build(build); code != 0) return code;
+
+    double here = 0;
+    std::map<std::string, double> step_ms;
+    for (const auto& [step, ms] : build.ms) step_ms[step] += ms, here += ms;
+    const DistributionModel model;
+    const double jobs = static_cast<double>(context.jobs.threads());
+    const auto each = [&](const DistributionPlan::Step& step) {
+        return step.questions == 0 ? 0 : step_ms[step.name] * jobs / static_cast<double>(step.questions);
+    };
+    const double module_ms = each(plan.module_step), artifact_ms = each(plan.artifact_step);
+    const double rest = here - step_ms["modules"] - step_ms["artifacts"];
+    const auto modelled = [&](uint64_t n) {
+        return rest + modelled_ms(plan.module_step.questions, module_ms, plan.module_step.bytes, n, model) +
+               modelled_ms(plan.artifact_step.questions, artifact_ms, plan.artifact_step.bytes, n, model);
+    };
+    std::vector<uint64_t> counts = {1, 2, 4, 8, 16, 32, 64};
+    if (*workers != 0) counts = {static_cast<uint64_t>(*workers)};
+
+    if (args.has("--json")) {
+        Json json;
+        json.object().key("steps").array();
+        for (const auto& [step, ms] : {std::pair(plan.module_step, module_ms), std::pair(plan.artifact_step, artifact_ms)})
+            json.object()
+                .text("step", step.name)
+                .number("questions", step.questions)
+                .number("bytes", step.bytes)
+                .number("ms_each", ms)
+                .end();
+        json.end().number("here_ms", here).number("not_distributed_ms", rest).key("model").array();
+        for (const uint64_t n : counts)
+            json.object()
+                .number("workers", n)
+                .number("batches", batches_for(plan.module_step.questions, module_ms, n) +
+                                       batches_for(plan.artifact_step.questions, artifact_ms, n))
+                .number("ms", modelled(n))
+                .end();
+        json.end().end();
+        return finish(json.take());
+    }
+    const auto n = [](uint64_t v) { return Count(v).grouped(); };
+    std::string out = "compile    " + n(plan.module_step.questions) + " classes, " + n(plan.module_step.bytes) + " bytes\n" +
+                      "translate  " + n(plan.artifact_step.questions) + " modules, " + n(plan.artifact_step.bytes) + " bytes\n" +
+                      "here       " + seconds(here) + " with " + std::to_string(context.jobs.threads()) + " jobs, of which " +
+                      seconds(rest) + " stay here\n";
+    for (const uint64_t count : counts)
+        out += std::to_string(count) + (count == 1 ? " worker   " : " workers  ") +
+               n(batches_for(plan.module_step.questions, module_ms, count) +
+                 batches_for(plan.artifact_step.questions, artifact_ms, count)) +
+               " batches, about " + seconds(modelled(count)) + (modelled(count) < here ? "\n" : ", no gain\n");
+    out += "modelled with 90 ms an action, 80 ms a worker's start and 100 MB/s; batches of at least half a second of work\n";
+    return finish(out);
+}
+
+}  // namespace kiln
