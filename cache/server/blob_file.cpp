@@ -60,26 +60,78 @@ BlobReader::Identity BlobReader::identity_of(const struct stat& info) {
             int64_t{info.st_ctim.tv_sec} * second + info.st_ctim.tv_nsec};
 }
 
+bool BlobReader::fresh(const Verified& verified, int64_t now) const {
+    return now >= verified.at && now - verified.at < again_after_ * second;
+}
+
 bool BlobReader::trusted(const Digest& key, const Identity& identity, int64_t now) {
     Shard& shard = shard_of(key);
     const std::lock_guard lock(shard.mutex);
     const auto found = shard.known.find(key);
-    return found != shard.known.end() && found->second.identity == identity && now >= found->second.at &&
-           now - found->second.at < again_after_ * second;
+    return found != shard.known.end() && found->second.identity == identity && fresh(found->second, now);
 }
 
 void BlobReader::trust(const Digest& key, const Identity& identity, int64_t now) {
     if (again_after_ == 0 || now - identity.changed < tick) return;
     Shard& shard = shard_of(key);
     const std::lock_guard lock(shard.mutex);
-    if (shard.known.size() >= most_in_shard && !shard.known.contains(key)) shard.known.clear();
-    shard.known[key] = {identity, now};
+    if (shard.known.size() >= most_in_shard && !shard.known.contains(key)) {
+        shard.known.clear();
+        shard.kept = 0;
+    }
+    Verified& known = shard.known[key];
+    if (known.bytes) shard.kept -= known.bytes->size();
+    known = {identity, now, nullptr};
+}
+
+// When a shard is full all of its bytes go: those that are read often are back at once.
+void BlobReader::keep(const Digest& key, const std::shared_ptr<const Bytes>& bytes) {
+    Shard& shard = shard_of(key);
+    const std::lock_guard lock(shard.mutex);
+    const auto found = shard.known.find(key);
+    if (found == shard.known.end() || found->second.bytes) return;
+    if (shard.kept + bytes->size() > most_kept / shards) {
+        for (auto& [name, known] : shard.known) known.bytes = nullptr;
+        shard.kept = 0;
+    }
+    found->second.bytes = bytes;
+    shard.kept += bytes->size();
+}
+
+std::shared_ptr<const Bytes> BlobReader::kept_bytes(const Digest& key, const std::string& path) {
+    Verified known;
+    {
+        Shard& shard = shard_of(key);
+        const std::lock_guard lock(shard.mutex);
+        const auto found = shard.known.find(key);
+        if (found == shard.known.end() || !found->second.bytes) return nullptr;
+        known = found->second;
+    }
+    struct stat info {};
+    if (::lstat(path.c_str(), &info) != 0 || !(identity_of(info) == known.identity)) return nullptr;
+    const int64_t now = system_time();
+    return fresh(known, now) && now - time_of(info) <= renew_after ? known.bytes : nullptr;
+}
+
+uint64_t BlobReader::kept() const {
+    uint64_t all = 0;
+    for (const Shard& shard : shards_) {
+        const std::lock_guard lock(shard.mutex);
+        all += shard.kept;
+    }
+    return all;
 }
 
 Result<std::optional<BlobFile>> BlobReader::open(const Digest& key) {
     static const Digest empty = sha256({});
     if (key == empty) return std::optional(BlobFile());
     const std::string path = store_.path_of(Keyspace::blob, key);
+    BlobFile file;
+    if (auto bytes = kept_bytes(key, path)) {
+        file.size_ = bytes->size();
+        file.memory_ = std::move(bytes);
+        return std::optional(std::move(file));
+    }
     auto fd = std::make_shared<Descriptor>(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW));
     if (fd->get() < 0) {
         if (errno == ENOENT || errno == ENOTDIR) return std::optional<BlobFile>();
@@ -94,13 +146,14 @@ Result<std::optional<BlobFile>> BlobReader::open(const Digest& key) {
         if (::fstat(fd->get(), &info) != 0) return io_error(path, "inspect", errno);
     }
     const Identity identity = identity_of(info);
-    BlobFile file;
     file.size_ = static_cast<uint64_t>(info.st_size);
     bool whole = regular;
     if (regular && file.size_ <= small) {
         auto bytes = std::make_shared<Bytes>(static_cast<size_t>(file.size_));
         if (!read_at(fd->get(), 0, *bytes)) return io_error(path, "read", errno);
-        if (!trusted(key, identity, now)) {
+        if (trusted(key, identity, now)) {
+            keep(key, bytes);
+        } else {
             ++hashed_;
             whole = sha256(*bytes) == key;
             if (whole) trust(key, identity, now);
@@ -135,6 +188,12 @@ Result<std::optional<BlobFile>> BlobReader::open(const Digest& key) {
 }
 
 bool BlobReader::quick(const Digest& key) const {
+    {
+        const Shard& shard = shard_of(key);
+        const std::lock_guard lock(shard.mutex);
+        const auto found = shard.known.find(key);
+        if (found != shard.known.end() && found->second.bytes) return true;
+    }
     struct stat info {};
     return ::stat(store_.path_of(Keyspace::blob, key).c_str(), &info) != 0 || info.st_size <= off_t{1} << 20;
 }

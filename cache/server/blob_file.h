@@ -33,6 +33,9 @@ private:
 // kernel sets a file's change time at every write and nobody can set it back, so an altered file is hashed again; bytes that
 // rot on the disk below the file system are found at the next hashing, and by every client that checks its digest.
 //
+// Small blobs that are read again are kept in memory, at most `most_kept` bytes of them; such a read looks at the file's
+// identity and no further.
+//
 // Whatever does not match goes to the store, which reads it once more, quarantines it and answers "absent".
 class BlobReader {
 public:
@@ -43,6 +46,8 @@ public:
     Result<bool> has(const Digest& key, uint64_t size);
     bool quick(const Digest& key) const;
     uint64_t hashed() const { return hashed_; }
+    uint64_t kept() const;  // bytes
+    static constexpr uint64_t most_kept = 16 << 20;
 
 private:
     static constexpr size_t shards = 16, most_in_shard = 4096;
@@ -54,16 +59,22 @@ private:
     };
     struct Verified {
         Identity identity;
-        int64_t at = 0;  // nanoseconds since 1970
+        int64_t at = 0;                      // nanoseconds since 1970
+        std::shared_ptr<const Bytes> bytes;  // null: not kept
     };
     struct Shard {
-        std::mutex mutex;
+        mutable std::mutex mutex;
+        uint64_t kept = 0;
         std::unordered_map<Digest, Verified> known;
     };
     static Identity identity_of(const struct stat& info);
+    bool fresh(const Verified& verified, int64_t now) const;
     bool trusted(const Digest& key, const Identity& identity, int64_t now);
+    void keep(const Digest& key, const std::shared_ptr<const Bytes>& bytes);
+    std::shared_ptr<const Bytes> kept_bytes(const Digest& key, const std::string& path);
     void trust(const Digest& key, const Identity& identity, int64_t now);
     Shard& shard_of(const Digest& key) { return shards_[key.bytes[31] % shards]; }
+    const Shard& shard_of(const Digest& key) const { return shards_[key.bytes[31] % shards]; }
 
     DiskStore& store_;
     const int64_t again_after_;

@@ -142,6 +142,36 @@ TEST(Service, ADamagedBlobIsAMissWhetherItWasTrustedOrNot) {
     EXPECT_EQ(s.store->counters().corrupt, 2u);
 }
 
+TEST(BlobReader, WhatIsKeptInMemoryIsBoundedAndFollowsTheFile) {
+    Served s;
+    BlobReader reads(*s.store, 600);
+    const std::string blob(10'000, 'k');
+    s.put(blob);
+    std::this_thread::sleep_for(std::chrono::milliseconds(120));  // past the kernel's tick, so that it is trusted
+    for (const uint64_t kept : {0u, 10'000u, 10'000u}) {
+        EXPECT_EQ(as_text(*(**reads.open(name_of(blob))).all()), blob);
+        EXPECT_EQ(reads.kept(), kept);
+    }
+    EXPECT_EQ(reads.hashed(), 1u);
+    const std::string path = path_of(s.folder.path(), Keyspace::blob, name_of(blob));
+    std::filesystem::remove(path);
+    EXPECT_FALSE(reads.open(name_of(blob))->has_value()) << "removed";
+    s.put(blob);
+    EXPECT_TRUE(reads.open(name_of(blob))->has_value());
+    EXPECT_EQ(reads.hashed(), 2u) << "another file of the same name";
+    std::filesystem::remove(path);
+    std::filesystem::create_symlink("/etc/hostname", path);
+    EXPECT_FALSE(reads.open(name_of(blob))->has_value()) << "a link";
+    std::vector<std::string> many;
+    for (int i = 0; i < 600; ++i) many.push_back(std::to_string(i) + std::string(60'000, 'm'));
+    for (const std::string& one : many) s.put(one);
+    std::this_thread::sleep_for(std::chrono::milliseconds(120));
+    for (int round = 0; round < 3; ++round)
+        for (const std::string& one : many) ASSERT_TRUE(reads.open(name_of(one))->has_value());
+    EXPECT_LE(reads.kept(), BlobReader::most_kept);
+    EXPECT_GE(reads.kept(), BlobReader::most_kept / 8);
+}
+
 TEST(Service, AnActionIsAHitOnlyWithAllItsBlobs) {
     Served s;
     s.put("one");
