@@ -102,6 +102,24 @@ int run_gc(DiskStore& store, const Args& args) {
                   of_limit(after.charged, store.options().limit));
 }
 
+int show_remote(const Args& args, const std::string& url) {
+    const auto probe = probe_remote(args, url);
+    if (!probe.ok()) return print_error(probe.error());
+    const int code = probe->reads ? 0 : static_cast<int>(Fault::environment);
+    if (args.has("--json")) {
+        Json json;
+        json.object().text("server", probe->name).key("reads").boolean(probe->reads);
+        json.text("problem", probe->problem).number("first_ms", probe->first_ms).number("ms", probe->ms).end();
+        return finish(json.take(), code);
+    }
+    if (!probe->reads) return print_error({Fault::environment, "the cache server " + probe->name + ": " + probe->problem});
+    char times[100];
+    std::snprintf(times, sizeof times, "  answers in %.1f ms, with the connection %.1f ms; this token may read\n", probe->ms,
+                  probe->first_ms);
+    return finish(probe->name + "\n" + times +
+                  "  what it holds, it shows to its administrator (kiln-cached: /status, /metrics)\n");
+}
+
 int run_cache(const Args& args) {
     const std::string& what = args.words().front();
     if (what != "stats" && what != "verify" && what != "gc" && what != "clear")
@@ -109,8 +127,10 @@ int run_cache(const Args& args) {
     if (args.has("--max-size") && what != "gc") return print_error({Fault::usage, "kiln cache: --max-size belongs to gc"});
     const auto places = CachePlaces::of(args);
     if (!places.ok()) return print_error(places.error());
-    if (args.has("--cache") && !places->url.empty())
-        return print_error({Fault::usage, "kiln cache: it looks after folders; a cache server shows its own state at /status"});
+    if (args.has("--cache") && !places->url.empty()) {
+        if (what == "stats") return show_remote(args, places->url);
+        return print_error({Fault::usage, "kiln cache " + what + ": it looks after folders; a cache server looks after itself"});
+    }
     const std::string& folder = places->folder;
     if (folder.empty()) return print_error({Fault::usage, "kiln cache: no home folder; name the cache with --cache DIR"});
     const auto options = cache_options(args);
@@ -125,12 +145,13 @@ int run_cache(const Args& args) {
 }  // namespace
 
 const Verb verb_cache{"cache",
-                      "stats|verify|gc|clear [--cache DIR] [--cache-size SIZE] [--max-size SIZE] [--json]",
+                      "stats|verify|gc|clear [--cache DIR|URL] [--cache-size SIZE] [--max-size SIZE] [--json]",
                       "show what the cache holds, check every bit of it, shrink it or empty it",
                       1,
                       1,
                       {option_cache,
                        option_cache_size,
+                       option_cache_timeout,
                        {"--max-size", nullptr, "SIZE", "gc: how much may stay; default nine tenths of the bound"},
                        option_json},
                       "kiln cache verify && kiln cache gc --max-size 500M",

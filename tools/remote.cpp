@@ -62,38 +62,75 @@ Result<CachePlaces> CachePlaces::of(const Args& args) {
     return places;
 }
 
-Result<std::unique_ptr<LayeredStore>> open_remote(const Args& args, const std::string& url, Store& local, LayeredStore::Has has,
-                                                  const Chaos* chaos) {
+namespace {
+
+struct Settings {
+    RemoteUrl where;
+    RemoteOptions remote;
+    LayeredOptions layers;
+};
+
+Result<Settings> settings_of(const Args& args, const std::string& url) {
     const auto where = RemoteUrl::parse(url);
     KILN_TRY(where);
-    RemoteOptions options;
-    LayeredOptions layers;
+    Settings out;
+    out.where = *where;
     const std::string asked = args.value("--cache-timeout", environment("KILN_CACHE_TIMEOUT"));
     if (!asked.empty()) {
         const auto timeout = seconds(args.has("--cache-timeout") ? "--cache-timeout" : "KILN_CACHE_TIMEOUT", asked);
         KILN_TRY(timeout);
-        options.timeout = *timeout;
+        out.remote.timeout = *timeout;
     }
     if (const std::string drain = environment("KILN_CACHE_DRAIN"); !drain.empty()) {
         const auto time = seconds("KILN_CACHE_DRAIN", drain);
         KILN_TRY(time);
-        layers.drain = *time;
+        out.layers.drain = *time;
     }
     const std::string read_only = environment("KILN_CACHE_READ_ONLY");
-    layers.write = !args.has("--cache-read-only") && (read_only.empty() || read_only == "0");
+    out.layers.write = !args.has("--cache-read-only") && (read_only.empty() || read_only == "0");
     const auto token = remote_token();
     KILN_TRY(token);
-    options.token = *token;
-    if (!options.token.empty() && !where->tls() && !where->loopback() && environment("KILN_CACHE_PLAIN_TOKEN") != "1")
+    out.remote.token = *token;
+    if (!out.remote.token.empty() && !where->tls() && !where->loopback() && environment("KILN_CACHE_PLAIN_TOKEN") != "1")
         return Error{Fault::usage, "cache '" + where->text() + "': a token is not sent in clear text over a network; use " +
                                        (where->scheme == "http" ? "https" : "grpcs") + ", or set KILN_CACHE_PLAIN_TOKEN=1"};
-    options.ca_file = environment("KILN_CACHE_CA");
-    options.trust_file = environment("KILN_CACHE_TRUST");
-    if (layers.write) options.sign_file = environment("KILN_CACHE_SIGN");
-    if (chaos != nullptr) options.chaos = *chaos;
-    auto remote = open_remote_cache(*where, options);
+    out.remote.ca_file = environment("KILN_CACHE_CA");
+    out.remote.trust_file = environment("KILN_CACHE_TRUST");
+    if (out.layers.write) out.remote.sign_file = environment("KILN_CACHE_SIGN");
+    return out;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<LayeredStore>> open_remote(const Args& args, const std::string& url, Store& local, LayeredStore::Has has,
+                                                  const Chaos* chaos) {
+    auto settings = settings_of(args, url);
+    KILN_TRY(settings);
+    if (chaos != nullptr) settings->remote.chaos = *chaos;
+    auto remote = open_remote_cache(settings->where, settings->remote);
     KILN_TRY(remote);
-    return std::make_unique<LayeredStore>(local, std::move(has), std::move(*remote), layers);
+    return std::make_unique<LayeredStore>(local, std::move(has), std::move(*remote), settings->layers);
+}
+
+Result<RemoteProbe> probe_remote(const Args& args, const std::string& url) {
+    const auto settings = settings_of(args, url);
+    KILN_TRY(settings);
+    const auto store = open_remote_store(settings->where, settings->remote);
+    KILN_TRY(store);
+    // A question that nobody has asked before and nobody will: its answer is a miss.
+    const Digest key = KeyHasher("kiln.probe.v1").field("name", url).finish();
+    RemoteProbe probe;
+    probe.name = (*store)->name();
+    for (int i = 0; i < 4; ++i) {
+        const auto began = std::chrono::steady_clock::now();
+        const RemoteAnswer answer = (*store)->get_actions({&key, 1}).front();
+        const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - began;
+        (i == 0 ? probe.first_ms : probe.ms) = i < 2 ? took.count() : std::min(probe.ms, took.count());
+        probe.reads = answer.kind == RemoteAnswer::Kind::absent || answer.kind == RemoteAnswer::Kind::found;
+        probe.problem = answer.problem;
+        if (!probe.reads) break;
+    }
+    return probe;
 }
 
 std::string remote_warning(const RemoteCache& remote) {

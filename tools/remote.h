@@ -23,6 +23,15 @@ extern const Option option_cache_timeout, option_cache_read_only;
 Result<std::unique_ptr<LayeredStore>> open_remote(const Args& args, const std::string& url, Store& local, LayeredStore::Has has,
                                                   const Chaos* chaos);
 
+// What a question costs, and whether this token is answered.
+struct RemoteProbe {
+    std::string name;
+    bool reads = false;
+    std::string problem;          // when it does not
+    double first_ms = 0, ms = 0;  // with the connection; the best of those after it
+};
+Result<RemoteProbe> probe_remote(const Args& args, const std::string& url);
+
 // The one warning about a server, empty when there is nothing to say; a note where the token is good for reading alone.
 std::string remote_warning(const RemoteCache& remote);
 std::string remote_note(const RemoteCache& remote);

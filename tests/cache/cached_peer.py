@@ -15,7 +15,7 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "server"))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from cached import Cached, Failed
-from peers import KILN, build, check, environment, in_folder, same
+from peers import KILN, Run, build, check, environment, in_folder, same
 
 CACHED = sys.argv[1]
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -113,6 +113,24 @@ def roles(protocol):
             check(secret not in said, "a token was said aloud")
 
 
+def probes():
+    tokens = [f"dev {READER} main:read"]
+    with Grpc(instances=["name: main"], tokens=tokens) as server:
+        for base in server.by.values():
+            env = {"KILN_CACHE_TOKEN": READER}
+            told = Run("cache", "stats", "--cache", base + "/main", "--json", **env).json
+            check(told["reads"] and told["problem"] == "" and told["server"] == base + "/main", f"stats: {told}")
+            check("may read" in Run("cache", "stats", "--cache", base + "/main", **env).out, "stats in words")
+            told = Run("cache", "stats", "--cache", base + "/main", "--json", code=3).json
+            check(not told["reads"] and told["problem"] != "", f"stats without a token: {told}")
+            for verb in ("verify", "gc", "clear"):
+                Run("cache", verb, "--cache", base + "/main", code=2, **env)
+        server.stop()
+        for base in server.by.values():
+            check("kiln: error" in Run("cache", "stats", "--cache", base + "/main", code=3).err, "a server that is gone")
+        server.stop = lambda: 0
+
+
 def tls(protocol):
     if shutil.which("openssl") is None:
         print("SKIP of TLS: no openssl here")
@@ -198,7 +216,7 @@ def no_server():
 
 def main():
     build("p/m.yaml", "alone.kiln", "--cache", "none")
-    for test, *words in ((hits,), (roles, "grpc"), (roles, "http"), (tls, "grpc"), (tls, "http"), (no_server,), (streams,)):
+    for test, *words in ((hits,), (probes,), (roles, "grpc"), (roles, "http"), (tls, "grpc"), (tls, "http"), (no_server,), (streams,)):
         began = time.monotonic()
         test(*words)
         print(f"{' '.join([test.__name__, *words])}: ok, {time.monotonic() - began:.1f} s", flush=True)
