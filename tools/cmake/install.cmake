@@ -12,6 +12,8 @@ install(TARGETS kiln_cli kiln_runtime EXPORT kilnTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(TARGETS kiln_worker kiln_cached RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(FILES ${CMAKE_SOURCE_DIR}/tools/packaging/kiln-cached.8 DESTINATION ${CMAKE_INSTALL_MANDIR}/man8)
+install(FILES ${CMAKE_SOURCE_DIR}/tools/packaging/kiln-cached.service DESTINATION lib/systemd/system)
 # Loaded from beside the program (cache/client/grpc_load.cpp), so not where the system keeps its libraries.
 install(TARGETS kiln_grpc LIBRARY DESTINATION lib/kiln)
 install(FILES ${CMAKE_SOURCE_DIR}/compiler/runtime/kiln.h ${CMAKE_SOURCE_DIR}/compiler/runtime/kiln.hpp
