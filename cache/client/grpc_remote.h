@@ -18,6 +18,7 @@ struct GrpcRemoteOptions {
     std::string token;                               // empty: none; else sent as a bearer token
     std::string authority;                           // grpcs: PEM; empty: the system's
     const std::atomic<bool>* interrupted = nullptr;  // the program's own: the module has another of that name
+    bool inputs = false;  // its blobs are what an engine reads: they are sent whether or not actions may be written
 };
 
 // What is asked for is refused where the server's API versions and 2.0 to 2.11 have nothing in common, or without SHA-256.
@@ -26,7 +27,7 @@ constexpr int grpc_newest_minor = 11;
 using OpenGrpcRemote = Result<std::unique_ptr<RemoteStore>>(const RemoteUrl&, const GrpcRemoteOptions&, const RemoteLimits&);
 
 // The module's one symbol; a change of any type in its signature changes the number.
-constexpr const char* grpc_module_symbol = "kiln_grpc_open_1";
+constexpr const char* grpc_module_symbol = "kiln_grpc_open_2";
 
 // Loads the module that lies beside this program (bin/kiln-grpc.so, or lib/kiln/ of the same installation) and opens a client. An
 // Error where there is none.

@@ -15,7 +15,7 @@
 #include "cache/protocol/resource_name.h"
 #include "compiler/base/bytes.h"
 
-extern "C" kiln::OpenGrpcRemote kiln_grpc_open_1;
+extern "C" kiln::OpenGrpcRemote kiln_grpc_open_2;
 
 namespace kiln::testing {
 
@@ -27,7 +27,7 @@ class Liar final : public reapi::Capabilities::Service,
                    public reapi::ContentAddressableStorage::Service,
                    public google::bytestream::ByteStream::Service {
 public:
-    Liar() {
+    explicit Liar(grpc::Service* more = nullptr) {
         capabilities.mutable_cache_capabilities()->add_digest_functions(reapi::DigestFunction::SHA256);
         capabilities.mutable_cache_capabilities()->mutable_action_cache_update_capabilities()->set_update_enabled(true);
         versions(2, 0, 2, 11);
@@ -38,6 +38,7 @@ public:
         builder.RegisterService(static_cast<reapi::ActionCache::Service*>(this));
         builder.RegisterService(static_cast<reapi::ContentAddressableStorage::Service*>(this));
         builder.RegisterService(static_cast<google::bytestream::ByteStream::Service*>(this));
+        if (more != nullptr) builder.RegisterService(more);
         server = builder.BuildAndStart();
     }
     ~Liar() override { stop(); }
@@ -65,7 +66,7 @@ public:
         options.token = secret;
         options.interrupted = interrupted;
         const auto url = RemoteUrl::parse("grpc://127.0.0.1:" + std::to_string(port) + "/team/main");
-        return std::move(*kiln_grpc_open_1(*url, options, limits));
+        return std::move(*kiln_grpc_open_2(*url, options, limits));
     }
 
     grpc::Status GetCapabilities(ServerContext* context, const reapi::GetCapabilitiesRequest* request,
