@@ -41,7 +41,9 @@ Result<std::unique_ptr<Engine>> open_engine(const std::string& spec) {
             return Error{Fault::usage, "--execute slurm:FOLDER takes the absolute name of a folder that all nodes see"};
         return std::unique_ptr<Engine>(std::make_unique<SlurmEngine>(folder, std::move(words)));
     }
-    return Error{Fault::usage, "--execute takes local:N or slurm:FOLDER[,SBATCH-OPTION]…, not '" + spec + "'"};
+    if (spec.starts_with("grpc://") || spec.starts_with("grpcs://")) return open_nodes(split(spec, ','));
+    return Error{Fault::usage,
+                 "--execute takes local:N, slurm:FOLDER[,SBATCH-OPTION]… or grpc://NODE[,grpc://NODE]…, not '" + spec + "'"};
 }
 
 std::string worker_program() {
@@ -59,7 +61,8 @@ std::string seconds(double ms) {
 }  // namespace
 
 const Option option_execute{"--execute", nullptr, "ENGINE",
-                            "compile and translate on an engine: local:N (processes), slurm:FOLDER[,OPTION]…"};
+                            "compile and translate on an engine: local:N (processes), slurm:FOLDER[,OPTION]…, "
+                            "grpc://NODE[/INSTANCE][,grpc://NODE]… (Remote Execution API)"};
 const Option option_execute_timeout{"--execute-timeout", nullptr, "S",
                                     "how long a step may take there before the rest is done here; default 600"};
 const Option option_plan{"--distributed-plan", nullptr, nullptr,

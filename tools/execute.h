@@ -20,6 +20,10 @@ struct Execution {
     static Result<std::unique_ptr<Execution>> open(const Args& args, Store& store, Toolchain& tools);
 };
 
+// Nodes of the Remote Execution API, taken in turn. Settings come from the environment: KILN_EXECUTE_TOKEN_FILE, KILN_EXECUTE_CA
+// (PEM, for grpcs), KILN_EXECUTE_PLATFORM (NAME=VALUE,… that workers must have).
+Result<std::unique_ptr<Engine>> open_nodes(const std::vector<std::string>& addresses);
+
 void execution_json(Json& json, const Execution& execution);
 std::string execution_text(const Execution& execution);
 // What went wrong, in a line; empty when nothing did.
