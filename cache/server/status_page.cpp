@@ -146,7 +146,7 @@ void instances(Page& page, const ServerFacts& facts) {
     const size_t shown = std::min<size_t>(rows.size(), 12);
     for (size_t i = 0; i < shown; ++i) {
         const Counts& c = rows[i].second;
-        page << "<tr><td>" << (rows[i].first.empty() ? std::string("(main)") : escaped(rows[i].first)) << "<td>"
+        page << "<tr><td>" << (rows[i].first.empty() ? std::string("(no name)") : escaped(rows[i].first)) << "<td>"
              << rate_text(c.action_hits, c.action_misses) << "<td>" << rate_text(c.blob_hits, c.blob_misses) << "<td>"
              << count_text(c.actions_written + c.actions_replaced) << "<td>" << count_text(c.blobs_written) << "<td>"
              << size_text(c.blob_bytes_in) << "<td>" << size_text(c.blob_bytes_out) << "<td>" << count_text(c.conflicts);
@@ -165,7 +165,7 @@ void events(Page& page, const ServerFacts& facts) {
     for (size_t i = 0; i < std::min<size_t>(facts.events.size(), 20); ++i) {
         const Event& e = facts.events[i];
         page << "<tr><td>" << time_text(e.time) << "<td>" << escaped(e.kind) << "<td>"
-             << (e.instance.empty() ? "(main)" : escaped(e.instance)) << "<td>" << escaped(e.caller) << "<td class=wide>"
+             << (e.instance.empty() ? "(no name)" : escaped(e.instance)) << "<td>" << escaped(e.caller) << "<td class=wide>"
              << escaped(e.message);
     }
     page << "</tbody></table></div>";

@@ -45,6 +45,7 @@ def fill(server, secret):
         server.call("GET", f"{instance}/cas/{key(b'blob')}", token=secret)
     server.call("PUT", f"/main/cas/{key(b'x')}", b"y", token=secret)
     server.call("GET", "/main/ac/" + action)
+    server.call("GET", "/ac/" + action, token=secret)
 
 
 def main():
@@ -69,7 +70,7 @@ def main():
             check(browser.js("return document.title") == "kiln-cached", "a caller's name ran as a script")
             equal(browser.js("return document.querySelectorAll('script, img, iframe').length"), 0, "foreign elements")
             text = browser.js("return document.body.innerText")
-            for part in ("pr/7", "a-rather-long-name", "conflict", hostile[:30]):
+            for part in ("main", "(no name)", "pr/7", "a-rather-long-name", "conflict", hostile[:30]):
                 check(part in text, f"the page lacks {part!r}: {text}")
             check("%" in text, "no hit rate")
             check(secret not in browser.js("return document.documentElement.outerHTML"), "the token is on the page")
