@@ -136,6 +136,8 @@ private:
     Outcome send(Node& node, const ReapiAction& action, bool whatever_it_says);
     Outcome execute(Node& node, const ReapiAction& action, bool anew, Clock::time_point end);
     Outcome fetch(Node& node, const Job& job, const ActionResult& result, JobResult& out);
+    // What a command that failed wrote to its standard error, as far as it is to be had.
+    static std::string complaint(Node& node, const ActionResult& result);
 
     const ReapiOptions options_;
     std::vector<std::unique_ptr<Node>> nodes_;
@@ -184,10 +186,9 @@ Result<JobResult> ReapiEngine::run_on(Node& node, const Job& job, const ReapiAct
         const auto result = parse_action_result(as_bytes(bytes));
         if (!result.ok()) return error({Outcome::Kind::failed, "its result is malformed: " + words(result.error().message), {}});
         if (result->exit_code != 0)
-            return error(
-                {Outcome::Kind::failed,
-                 "the command ended with " + std::to_string(result->exit_code) + ": " + words(as_text(result->stderr_raw)),
-                 {}});
+            return error({Outcome::Kind::failed,
+                          "the command ended with " + std::to_string(result->exit_code) + ": " + complaint(node, *result),
+                          {}});
         JobResult out;
         out.cached = outcome.response.cached_result();
         outcome = fetch(node, job, *result, out);
@@ -267,6 +268,13 @@ Outcome ReapiEngine::execute(Node& node, const ReapiAction& action, bool anew, C
         }
     }
     return outcome;
+}
+
+std::string ReapiEngine::complaint(Node& node, const ActionResult& result) {
+    if (!result.stderr_raw.empty() || !result.stderr_digest || result.stderr_digest->size > 64 * 1024)
+        return words(as_text(result.stderr_raw));
+    const RemoteBlob blob{result.stderr_digest->digest, result.stderr_digest->size};
+    return words(as_text(node.blobs->get_blobs({&blob, 1}).front().bytes));
 }
 
 Outcome ReapiEngine::fetch(Node& node, const Job& job, const ActionResult& result, JobResult& out) {

@@ -321,6 +321,13 @@ TEST(ReapiEngine, NothingThatComesBackIsBelieved) {
         r.set_stderr_raw("no\x1b[31m such thing");
     });
     EXPECT_TRUE(says(failing, "ended with 3: no [31m such thing"));
+    EXPECT_TRUE(says(with([&](auto& r) {
+                         r.set_exit_code(4);
+                         const std::lock_guard lock(node.store.mutex);
+                         node.store.blobs[sha256(as_bytes("a long story")).hex()] = "a long story";
+                         set_digest(r.mutable_stderr_digest(), {sha256(as_bytes("a long story")), 12});
+                     }),
+                     "ended with 4: a long story"));
 
     node.on_execute = [&](ServerContext*, const reapi::ExecuteRequest&, Answers* out) {
         node.answer(out, reapi::Digest());  // a message of another type
