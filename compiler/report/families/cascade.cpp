@@ -189,6 +189,12 @@ Point point_at(vec2 u) {
                 ");\n"
                 "    return vec3(cascaded_shadow(maps, clip_of_world, bias, position, choice));\n");
     }
+    add(choices()[3], "four_no_gradients", "four cascades, no blend, and a look-up that names no level: not for divergent pixels",
+        "    const CascadeChoice choice = choose_cascade(depth, 2.0, ends, 4, 0.0);\n    if (choice.index < 0) return "
+        "vec3(1.0);\n"
+        "    const vec4 place = shadow_coordinates(clip_of_world[choice.index] * vec4(position, 1.0));\n"
+        "    const float lit = texture(maps, vec4(place.xy, float(choice.index), place.z - bias[choice.index]));\n"
+        "    return vec3(place.w > 0.0 ? lit : 1.0);\n");
     add(choices()[3], "four_lecture", "the lecture's steps: all four sampled, one kept, no bias",
         "    mat4 matrices[4] = mat4[4](clip_of_world[0], clip_of_world[1], clip_of_world[2], "
         "clip_of_world[3]);\n"
@@ -202,6 +208,8 @@ Point point_at(vec2 u) {
         {Metric::rmse, Relation::below, "four_even", "four_logarithmic", 1.0, "distant", "and equal slices far from it"});
     f.expectations.push_back({Metric::time, Relation::near, "one", "four", 1.5, "whole", "chosen first, then sampled once"});
     f.expectations.push_back({Metric::time, Relation::below, "four", "four_lecture", 2.0, "whole", "four look-ups for one"});
+    f.expectations.push_back({Metric::time, Relation::below, "four_no_gradients", "four_lecture", 2.0, "whole",
+                              "the same where no look-up names its level"});
     f.expectations.push_back(
         {Metric::time, Relation::near, "four_blend_10", "four", 1.15, "whole", "at most the band's share of a look-up"});
     for (const char* m : {"four_blend_5", "four_blend_10"})
