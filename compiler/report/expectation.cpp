@@ -150,7 +150,7 @@ Judged judge(const Expectation& e,
         numbers += ", closer than the noise of the measurement";
     } else if (!steady(e, *a, *b)) {
         out.verdict = Verdict::undecided;
-        numbers += ", closer than the reference's noise of " + digits(std::max(a->noise, b->noise));
+        numbers += ", closer than the noise of " + digits(std::max(a->noise, b->noise));
     }
     out.words = what + ": " + std::string(name_of(out.verdict)) + ", " + numbers;
     return out;

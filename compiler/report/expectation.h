@@ -64,7 +64,7 @@ inline constexpr double time_noise = 0.05;
 // Nor can two times that differ by less than this many ns a pixel.
 inline constexpr double time_floor = 0.02;
 
-// A measured value, and how far it may be off because the reference is.
+// A measured value, and how far it may be off: the reference may be, and what a member draws at random is.
 struct Known {
     double value = 0, noise = 0;
 };

@@ -11,6 +11,12 @@ double Reference::standard_error() const {
     return mean > 0.0 ? std::sqrt(square) / mean : 0.0;
 }
 
+void mark_random(Family& family, const std::vector<std::string>& prefixes) {
+    for (Member& m : family.members)
+        for (const std::string& prefix : prefixes)
+            if (m.name.starts_with(prefix)) m.random = true;
+}
+
 Reference per_point(const Points& points, uint32_t width, uint32_t height, const Effort& effort,
                     const std::function<Vec3d(size_t)>& value) {
     Reference out;

@@ -75,6 +75,7 @@ class Bench;
 struct Member {
     std::string name, what;
     std::string glsl = {};
+    bool random = false;  // other directions or places in every pixel: its picture is noisy
     std::function<Result<std::vector<Resource>>(size_t scene, Bench& bench, const Effort& effort)> resources = {};
     std::map<std::string, std::string> scene_glsl = {};  // by scene: put before `glsl`
 };
@@ -98,6 +99,9 @@ struct Family {
     // Further sentences that follow from the times: one a line.
     std::function<std::vector<std::string>(const TimeOf& ns)> remarks;
 };
+
+// Marks the members of these prefixes as random.
+void mark_random(Family& family, const std::vector<std::string>& prefixes);
 
 // A closed form a pixel, spread over the effort's threads.
 Reference per_point(const Points& points, uint32_t width, uint32_t height, const Effort& effort,

@@ -88,4 +88,32 @@ Metrics noise_of(const Metrics& measured, const Picture& r, const std::vector<do
     return out;
 }
 
+Metrics sampling_noise_of(const Metrics& measured, const Picture& x, const Picture& r, const std::vector<bool>& region) {
+    const auto counts = [&](size_t pixel) { return region.empty() || region[pixel]; };
+    double mean_r = 0.0, n = 0.0;
+    for (size_t i = 0; i < r.pixels(); ++i)
+        if (counts(i)) mean_r += (r.rgb[3 * i] + r.rgb[3 * i + 1] + r.rgb[3 * i + 2]) / 3.0, ++n;
+    Metrics out;
+    if (n < 2.0) return out;
+    mean_r /= n;
+    // Channels of a pixel share its directions, so pixels are what is counted.
+    double sum[3] = {}, squares[3] = {};
+    for (size_t i = 0; i < r.pixels(); ++i) {
+        if (!counts(i)) continue;
+        double value[3] = {};
+        for (size_t c = 3 * i; c < 3 * i + 3; ++c) {
+            const double d = std::isfinite(x.rgb[c]) ? x.rgb[c] - r.rgb[c] : 0.0;
+            value[0] += d * d / 3.0;
+            value[1] += ratio(d * d, r.rgb[c] * r.rgb[c] + 0.01 * mean_r * mean_r) / 3.0;
+            value[2] += d / 3.0;
+        }
+        for (size_t k = 0; k < 3; ++k) sum[k] += value[k], squares[k] += value[k] * value[k];
+    }
+    const auto error = [&](size_t k) { return std::sqrt(std::max(0.0, squares[k] / n - sum[k] * sum[k] / (n * n)) / (n - 1.0)); };
+    out.rmse = ratio(error(0), measured.rmse);  // two errors of the square, over twice its root
+    out.relmse = 2.0 * error(1);
+    out.bias = ratio(2.0 * error(2), std::fabs(mean_r));
+    return out;
+}
+
 }  // namespace kiln::report

@@ -29,4 +29,8 @@ Metrics measure(const Picture& x, const Picture& r, const std::vector<bool>& reg
 Metrics noise_of(const Metrics& measured, const Picture& r, const std::vector<double>& variance,
                  const std::vector<bool>& region = {});
 
+// The same for what a member draws at random, another time in every pixel: two standard errors of the means over pixels.
+// Nothing is said of maxima and of FLIP.
+Metrics sampling_noise_of(const Metrics& measured, const Picture& x, const Picture& r, const std::vector<bool>& region = {});
+
 }  // namespace kiln::report

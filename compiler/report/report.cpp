@@ -171,14 +171,21 @@ public:
         const Reference& truth = stage.truth;
         out.all = measure(x, truth.picture);
         out.all.flip = mean_of(stage.flip->against(x, effort_.jobs));
-        out.all_noise = noise_of(out.all, truth.picture, truth.variance);
+        const auto noise = [&](const Metrics& measured, const std::vector<bool>& where) {
+            Metrics n = noise_of(measured, truth.picture, truth.variance, where);
+            if (!member.random) return n;
+            const Metrics own = sampling_noise_of(measured, x, truth.picture, where);
+            n.rmse += own.rmse, n.relmse += own.relmse, n.bias += own.bias;
+            return n;
+        };
+        out.all_noise = noise(out.all, {});
         if (!truth.region.empty()) {
             out.region = measure(x, truth.picture, truth.region);
-            out.region_noise = noise_of(out.region, truth.picture, truth.variance, truth.region);
+            out.region_noise = noise(out.region, truth.region);
             std::vector<bool> rest = truth.region;
             rest.flip();
             out.rest = measure(x, truth.picture, rest);
-            out.rest_noise = noise_of(out.rest, truth.picture, truth.variance, rest);
+            out.rest_noise = noise(out.rest, rest);
         }
         auto picture = shown(x, truth.picture);
         KILN_TRY(picture);

@@ -20,7 +20,7 @@ struct Timing {
 
 struct Measured {
     Metrics all, region, rest;                    // the last two where the scene has a region
-    Metrics all_noise, region_noise, rest_noise;  // how far they may be off: noise_of()
+    Metrics all_noise, region_noise, rest_noise;  // how far they may be off
     Timing timing;
     uint64_t spirv = 0, operations = 0;  // of the picture's shader
     uint64_t bytes = 0;                  // of what it reads
@@ -28,7 +28,7 @@ struct Measured {
     bool front_relmse = false, front_max_rel = false;
     // bias is given by its size here
     double value(Metric metric) const;
-    double noise(Metric metric) const;  // of the reference
+    double noise(Metric metric) const;  // of the reference, and of what a member draws at random
 };
 
 struct FamilyReport {

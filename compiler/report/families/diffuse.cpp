@@ -331,6 +331,7 @@ Family diffuse_family(bool quick) {
         {Metric::relmse, Relation::below, "mc_64_mis", "mc_1024", 100.0, "sky_and_sun", "or send half of the directions to it"});
     for (const char* s : {"cap_5", "cap_30", "cap_60"})
         f.expectations.push_back({Metric::relmse, Relation::below, "mc_64_mis", "mc_64", 1.0, s, "as many directions, aimed"});
+    mark_random(f, {"mc_"});
     return f;
 }
 

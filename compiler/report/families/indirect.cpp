@@ -283,6 +283,7 @@ Family indirect_family(bool quick) {
         {Metric::bias, Relation::at_least, "screen_64", "", 0.5, "plates", "the screen has the lamp edge-on, and misses it"});
     for (const Expectation& e : ascending(Metric::time, {"ambient", "rsm_64", "rsm_256", "rsm_1024"}, "cornell"))
         f.expectations.push_back(e);
+    mark_random(f, {"screen_", "sdf_cones_", "paths_"});
     return f;
 }
 

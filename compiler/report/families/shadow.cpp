@@ -253,6 +253,7 @@ Family shadow_family(bool quick) {
     expect(Metric::region_rmse, "vssm", "vssm_mips", "square_4", "a box where the light is square, not a blend of levels");
     expect(Metric::time, "vssm", "pcss_16_16", "", "VSSM is the cheapest soft shadow");
     expect(Metric::time, "vssm_mips", "vssm", "", "two look-ups for eight");
+    mark_random(f, {"poisson_", "pcss_", "traced_"});
     return f;
 }
 

@@ -187,6 +187,7 @@ Family subsurface_family(bool quick) {
     for (const Expectation& e : ascending(Metric::time, {"separable_7", "separable_17", "separable_25"}, "edge"))
         f.expectations.push_back(e);
     f.timed_scene = 3;
+    mark_random(f, {"burley_", "dipole_"});
     return f;
 }
 

@@ -29,9 +29,9 @@ TEST(Expectation, CloseTimesDecideNothing) {
     EXPECT_EQ(of({Metric::time, Relation::below, "c", "a"}).verdict, Verdict::falsified);
     EXPECT_EQ(of({Metric::time, Relation::near, "a", "b"}).verdict, Verdict::confirmed);
 }
-TEST(Expectation, WhatTheReferencesNoiseCouldTurnRoundIsUndecided) {
+TEST(Expectation, WhatNoiseCouldTurnRoundIsUndecided) {
     EXPECT_EQ(of({Metric::rmse, Relation::below, "a", "b"}).words,
-              "RMSE of a below b: undecided, 1 against 1.15, closer than the reference's noise of 0.1");
+              "RMSE of a below b: undecided, 1 against 1.15, closer than the noise of 0.1");
     EXPECT_EQ(of({Metric::rmse, Relation::below, "b", "a"}).verdict, Verdict::undecided);
     EXPECT_EQ(of({Metric::rmse, Relation::below, "a", "c"}).verdict, Verdict::confirmed);
     EXPECT_EQ(of({Metric::rmse, Relation::below, "c", "a"}).verdict, Verdict::falsified);

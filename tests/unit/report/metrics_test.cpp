@@ -91,5 +91,34 @@ TEST(Noise, CoversWhatAnUncertainReferenceDoes) {
     EXPECT_EQ(noise_of(measured, r, {}).rmse, 0.0);
 }
 
+// Many pictures of the same noise: their metrics scatter as one picture's own estimate says, within a factor 1.5.
+TEST(Noise, OfAMemberIsKnownFromOnePicture) {
+    uint32_t state = 1;
+    const auto uniform = [&] { return static_cast<double>((state = state * 1664525u + 1013904223u) >> 8) * 0x1p-24; };
+    Picture r(16, 16);
+    for (double& v : r.rgb) v = 1.0;
+    double sum[3] = {}, squares[3] = {}, said[3] = {};
+    const int pictures = 300;
+    for (int k = 0; k < pictures; ++k) {
+        Picture x(16, 16);
+        for (size_t i = 0; i < x.pixels(); ++i) {
+            const double d = uniform() - 0.4;
+            for (size_t c = 0; c < 3; ++c) x.rgb[3 * i + c] = 1.0 + d;
+        }
+        const Metrics m = measure(x, r), noise = sampling_noise_of(m, x, r);
+        const double values[3] = {m.rmse, m.relmse, m.bias}, noises[3] = {noise.rmse, noise.relmse, noise.bias};
+        for (int i = 0; i < 3; ++i) {
+            sum[i] += values[i] / pictures;
+            squares[i] += values[i] * values[i] / pictures;
+            said[i] += noises[i] / pictures;
+        }
+    }
+    for (int i = 0; i < 3; ++i) {
+        const double seen = 2.0 * std::sqrt(squares[i] - sum[i] * sum[i]);
+        EXPECT_LT(said[i], 1.5 * seen) << i;
+        EXPECT_GT(said[i], seen / 1.5) << i;
+    }
+}
+
 }  // namespace
 }  // namespace kiln::report
