@@ -132,14 +132,17 @@ std::string plot_svg(const std::string& title, const std::string& error_name, co
     const Axis x = axis_over(fast, slow, left, width - right);
     const Axis y = axis_over(least, most, zeros ? floor_y - 26 : floor_y, top);
 
-    for (double e = x.low; e <= x.high + 0.5; ++e) {
+    const auto decades = [](const Axis& axis) { return static_cast<int>(std::floor(axis.high - axis.low + 0.5)); };
+    for (int i = 0; i <= decades(x); ++i) {
+        const double e = x.low + i;
         const double at = x.at(std::pow(10.0, e));
         s += "<line class=\"grid\" x1=\"" + number(at) + "\" x2=\"" + number(at) + "\" y1=\"" + number(top) + "\" y2=\"" +
              number(floor_y) + "\"/><text class=\"tick\" text-anchor=\"middle\" x=\"" + number(at) + "\" y=\"" +
              number(floor_y + 15) + "\">" + power(e) + "</text>";
     }
-    const double every = std::max(1.0, std::ceil((y.high - y.low) / 9.0));
-    for (double e = y.low; e <= y.high + 0.5; e += every) {
+    const int every = std::max(1, static_cast<int>(std::ceil((y.high - y.low) / 9.0)));
+    for (int i = 0; i <= decades(y); i += every) {
+        const double e = y.low + i;
         const double at = y.at(std::pow(10.0, e));
         s += "<line class=\"grid\" x1=\"" + number(left) + "\" x2=\"" + number(width - right) + "\" y1=\"" + number(at) +
              "\" y2=\"" + number(at) + "\"/><text class=\"tick\" text-anchor=\"end\" x=\"" + number(left - 5) + "\" y=\"" +

@@ -246,15 +246,18 @@ std::vector<Translated> cross_translate(WordView words, const std::vector<Target
     }
     const ReadOften often = find_read_often(words);
     const bool corrects_depth = slots.rasterised == reflected->reflection.stage;
-    for (const size_t i : todo) {
+    const auto translate = [&](size_t i, auto&& copy_or_tree) {
         try {
-            Translation translation(targets[i], *view, edits[i], often);
-            out[i].text = i == todo.back() ? translation.run(std::move(tree), corrects_depth, slots.flat_blocks)
-                                           : translation.run(tree, corrects_depth, slots.flat_blocks);
+            out[i].text = Translation(targets[i], *view, edits[i], often)
+                              .run(std::forward<decltype(copy_or_tree)>(copy_or_tree), corrects_depth, slots.flat_blocks);
         } catch (const std::exception& problem) {
             out[i] = refused(problem.what());
         }
-    }
+    };
+    const size_t last = todo.back();
+    todo.pop_back();
+    for (const size_t i : todo) translate(i, std::as_const(tree));
+    translate(last, std::move(tree));
     return out;
 }
 

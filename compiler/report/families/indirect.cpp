@@ -128,7 +128,8 @@ Family indirect_family(bool quick) {
             const double mean[] = {0.0, reference::pi * 1.5, reference::pi * reference::form_factor_parallel(1, 1, 1)};
             Vec3d sum = reference::splat3(mean[scene]);
             for (int i = 0; i < 16 && scene == 0; ++i) {
-                const double x = -0.7125 + 0.475 * (i % 4), z = -0.7125 + 0.475 * (i / 4);
+                const int row = i / 4;
+                const double x = -0.7125 + 0.475 * (i % 4), z = -0.7125 + 0.475 * row;
                 const auto e =
                     reference::gi_irradiance_lattice(reference::gi_cornell_quads(), reference::gi_cornell_lamp(),
                                                      {x, height_of(x, z), z}, {0, 1, 0}, 1, 1, 77 + static_cast<uint64_t>(i));
