@@ -122,7 +122,7 @@ uint64_t BlobReader::kept() const {
     return all;
 }
 
-Result<std::optional<BlobFile>> BlobReader::open(const Digest& key) {
+Result<std::optional<BlobFile>> BlobReader::open(const Digest& key, bool* slow) {
     static const Digest empty = sha256({});
     if (key == empty) return std::optional(BlobFile());
     const std::string path = store_.path_of(Keyspace::blob, key);
@@ -148,10 +148,15 @@ Result<std::optional<BlobFile>> BlobReader::open(const Digest& key) {
     const Identity identity = identity_of(info);
     file.size_ = static_cast<uint64_t>(info.st_size);
     bool whole = regular;
+    const bool known = regular && trusted(key, identity, now);
+    if (regular && !known && slow != nullptr && file.size_ > moment) {
+        *slow = true;
+        return std::optional<BlobFile>();
+    }
     if (regular && file.size_ <= small) {
         auto bytes = std::make_shared<Bytes>(static_cast<size_t>(file.size_));
         if (!read_at(fd->get(), 0, *bytes)) return io_error(path, "read", errno);
-        if (trusted(key, identity, now)) {
+        if (known) {
             keep(key, bytes);
         } else {
             ++hashed_;
@@ -160,7 +165,7 @@ Result<std::optional<BlobFile>> BlobReader::open(const Digest& key) {
         }
         file.memory_ = std::move(bytes);
         fd.reset();
-    } else if (regular && !trusted(key, identity, now)) {
+    } else if (regular && !known) {
         ++hashed_;
         StreamHash hash;
         Bytes part(block);
@@ -185,17 +190,6 @@ Result<std::optional<BlobFile>> BlobReader::open(const Digest& key) {
     mended.size_ = (*again)->size();
     mended.memory_ = std::make_shared<Bytes>(std::move(**again));
     return std::optional(std::move(mended));
-}
-
-bool BlobReader::quick(const Digest& key) const {
-    {
-        const Shard& shard = shard_of(key);
-        const std::lock_guard lock(shard.mutex);
-        const auto found = shard.known.find(key);
-        if (found != shard.known.end() && found->second.bytes) return true;
-    }
-    struct stat info {};
-    return ::stat(store_.path_of(Keyspace::blob, key).c_str(), &info) != 0 || info.st_size <= off_t{1} << 20;
 }
 
 Result<bool> BlobReader::has(const Digest& key, uint64_t size) {

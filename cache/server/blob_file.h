@@ -18,6 +18,8 @@ public:
     Status read(uint64_t offset, std::span<uint8_t> out) const;
     // The bytes where they are in memory already; empty for a blob that is read from its file.
     ByteView memory() const { return memory_ ? ByteView(*memory_) : ByteView(); }
+    // The open file of one that is not in memory, for sendfile(2); -1.
+    int descriptor() const { return fd_ ? fd_->get() : -1; }
     // The whole of it.
     Result<Bytes> all() const;
 
@@ -41,17 +43,18 @@ class BlobReader {
 public:
     // `again_after` in seconds; 0: hash at every read.
     BlobReader(DiskStore& store, int64_t again_after) : store_(store), again_after_(again_after) {}
-    Result<std::optional<BlobFile>> open(const Digest& key);
+    // With `slow`: sets it instead of hashing a large file, and answers nothing.
+    Result<std::optional<BlobFile>> open(const Digest& key, bool* slow = nullptr);
     // Whether a blob of this size is there; counts as a use. Its bytes are not verified.
     Result<bool> has(const Digest& key, uint64_t size);
-    bool quick(const Digest& key) const;
     uint64_t hashed() const { return hashed_; }
     uint64_t kept() const;  // bytes
     static constexpr uint64_t most_kept = 16 << 20;
 
 private:
     static constexpr size_t shards = 16, most_in_shard = 4096;
-    static constexpr uint64_t small = 64 * 1024;  // read whole: one system call
+    static constexpr uint64_t small = 64 * 1024;           // read whole: one system call
+    static constexpr uint64_t moment = uint64_t{1} << 20;  // hashed in less than a millisecond
     struct Identity {
         uint64_t device = 0, inode = 0, size = 0;
         int64_t modified = 0, changed = 0;

@@ -14,6 +14,10 @@
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/ssl/ssl_stream.hpp>
 
+#include <sys/sendfile.h>
+#include <sys/socket.h>
+#include <sys/uio.h>
+
 #include <exception>
 #include <unordered_set>
 
@@ -77,7 +81,7 @@ std::string response_head(const HttpResponse& response, bool close);
 template <class Stream>
 class Connection final : public ConnectionBase, public std::enable_shared_from_this<Connection<Stream>> {
     static constexpr bool secure = !std::is_same_v<Stream, beast::tcp_stream>;
-    static constexpr size_t piece = 64 * 1024;
+    static constexpr size_t piece = 64 * 1024, at_once = size_t{1} << 20;
 
 public:
     template <class... Arguments>
@@ -96,6 +100,7 @@ public:
                     self->next_request();
             });
         } else {
+            stream_.socket().native_non_blocking(true, ignored_);  // sendfile has no flag for it
             next_request();
         }
     }
@@ -274,16 +279,19 @@ private:
         beast::get_lowest_layer(stream_).expires_never();
         body_.resize(filled_);
         received_ = filled_;
-        if (!work_.blocks) return respond(answer());
+        if (!work_.blocks) {
+            if (auto response = answer()) return respond(std::move(*response));
+            work_.blocks = true;
+        }
         // The pool's handler gives its share of the connection away, so that the last one is dropped on the loop's thread.
         net::post(shared_.pool, [self = this->shared_from_this()]() mutable {
-            auto response = std::make_shared<HttpResponse>(self->answer());
+            auto response = std::make_shared<HttpResponse>(self->answer().value());
             const auto executor = self->stream_.get_executor();
             net::post(executor, [self = std::move(self), response] { self->respond(std::move(*response)); });
         });
     }
 
-    HttpResponse answer() {
+    std::optional<HttpResponse> answer() {
         try {
             return shared_.face.answer(work_, body_);
         } catch (const std::exception& thrown) {  // memory
@@ -311,7 +319,40 @@ private:
         head_ = response_head(response_, close_);
         sent_ = 0;
         to_send_ = work_.method == Method::head ? 0 : response_.length();
-        write_some(true);
+        if (!send_at_once()) return write_some(true);
+        // What stands in the buffer already is answered from the loop, not from here, or many small requests would nest.
+        if (buffer_.size() == 0) return on_sent();
+        net::post(stream_.get_executor(), [self = this->shared_from_this()] { self->on_sent(); });
+    }
+
+    // Plain TCP: gives the kernel what it takes without waiting, mostly a whole response, from the file itself where it is in
+    // one. False: the rest goes by write_some(), with a deadline.
+    bool send_at_once() {
+        if constexpr (secure) return false;
+        const int socket = beast::get_lowest_layer(stream_).socket().native_handle();
+        const int file = response_.file && to_send_ != 0 ? response_.file->descriptor() : -1;
+        const ByteView memory = response_.file ? response_.file->memory() : ByteView(response_.body);
+        iovec parts[] = {{head_.data(), head_.size()},
+                         {const_cast<uint8_t*>(memory.data()), to_send_ == 0 ? 0 : std::min(memory.size(), at_once)}};
+        msghdr message{};
+        message.msg_iov = parts;
+        message.msg_iovlen = 2;
+        const ssize_t n = ::sendmsg(socket, &message, MSG_DONTWAIT | MSG_NOSIGNAL | (file >= 0 ? MSG_MORE : 0));
+        if (n < 0) return false;  // full, or gone, which write_some() will find
+        const auto taken = static_cast<size_t>(n);
+        if (taken < head_.size()) {
+            head_.erase(0, taken);
+            return false;
+        }
+        sent_ = taken - head_.size();
+        head_.clear();
+        while (file >= 0 && sent_ < std::min<uint64_t>(to_send_, at_once)) {
+            off_t offset = static_cast<off_t>(sent_);
+            const ssize_t moved = ::sendfile(socket, file, &offset, static_cast<size_t>(to_send_ - sent_));
+            if (moved <= 0) return false;
+            sent_ += static_cast<uint64_t>(moved);
+        }
+        return sent_ == to_send_;
     }
 
     // The next 64 KiB: of the body, of what a file has in memory, or read from it.

@@ -171,11 +171,11 @@ std::optional<HttpResponse> HttpFace::plan(const HttpHead& head, HttpWork& work)
         if (!equal_ignoring_case(head.content_encoding, "zstd")) return text(415, "bodies come plain or as zstd");
         work.unpack = true;
     }
-    work.blocks = target->what != What::blob || work.method == Method::put || !service_.quick(target->key);
+    work.blocks = target->what != What::blob || work.method == Method::put || work.pack;
     return std::nullopt;
 }
 
-HttpResponse HttpFace::answer(const HttpWork& work, ByteView body) {
+std::optional<HttpResponse> HttpFace::answer(const HttpWork& work, ByteView body) {
     using What = Target::What;
     if (work.target.what == What::status || work.target.what == What::metrics || work.target.what == What::health ||
         work.target.what == What::root)
@@ -210,14 +210,16 @@ HttpResponse HttpFace::bytes(const HttpWork& work, Answer<std::optional<Bytes>> 
     return response;
 }
 
-HttpResponse HttpFace::get(const HttpWork& work) {
+std::optional<HttpResponse> HttpFace::get(const HttpWork& work) {
     const Target& t = work.target;
     if (t.what == Target::What::dav) {
         if (t.collection) return text(404, "a collection has no content");
         return bytes(work, service_.file(work.caller, t.instance, t.path));
     }
     if (t.what == Target::What::action) return bytes(work, service_.action(work.caller, t.instance, t.key));
-    auto found = service_.blob(work.caller, t.instance, t.key);
+    bool slow = false;
+    auto found = service_.blob(work.caller, t.instance, t.key, work.blocks ? nullptr : &slow);
+    if (slow) return std::nullopt;
     if (!found.ok()) return refused(found.refused());
     if (!*found) return text(404, "not here");
     if (work.pack && work.method == Method::get && (*found)->size() >= pack_least && (*found)->size() <= pack_most) {

@@ -66,12 +66,13 @@ public:
 
     // Fills `work`. A response makes the body unwanted: roles and limits are checked before any of it is read.
     std::optional<HttpResponse> plan(const HttpHead& head, HttpWork& work);
-    HttpResponse answer(const HttpWork& work, ByteView body);
+    // nullopt, only for work that does not block: it would, after all; ask again with `blocks` where that is no harm.
+    std::optional<HttpResponse> answer(const HttpWork& work, ByteView body);
     HttpResponse refused(const Refused& refused) const;
     Service& service() { return service_; }
 
 private:
-    HttpResponse get(const HttpWork& work);
+    std::optional<HttpResponse> get(const HttpWork& work);
     HttpResponse put(const HttpWork& work, ByteView body);
     HttpResponse propfind(const HttpWork& work);
     HttpResponse page(const HttpWork& work);

@@ -73,11 +73,12 @@ Answer<Instance> Service::enter(const Caller& caller, std::string_view name, Rol
     return refuse(in, caller, Refusal::forbidden, "the token's roles do not allow this");
 }
 
-Answer<std::optional<BlobFile>> Service::blob(const Caller& caller, std::string_view name, const Digest& key) {
+Answer<std::optional<BlobFile>> Service::blob(const Caller& caller, std::string_view name, const Digest& key, bool* slow) {
     auto instance = enter(caller, name, Role::read);
     if (!instance.ok()) return instance.refused();
-    auto file = reader_of_blobs_.open(key);
+    auto file = reader_of_blobs_.open(key, slow);
     if (!file.ok()) return failure(*instance, caller, file.error());
+    if (slow != nullptr && *slow) return std::optional<BlobFile>();
     Counts counts;
     (file->has_value() ? counts.blob_hits : counts.blob_misses) = 1;
     if (file->has_value()) counts.blob_bytes_out = (*file)->size();

@@ -66,10 +66,9 @@ public:
     // caller without any role in an instance is not told whether it exists.
     Answer<Instance> enter(const Caller& caller, std::string_view instance, Role role);
 
-    // nullopt: absent.
-    Answer<std::optional<BlobFile>> blob(const Caller& caller, std::string_view instance, const Digest& key);
-    // Whether reading it takes no more than a moment: it is small, or absent. Asks nothing of a caller and counts nothing.
-    bool quick(const Digest& key) const { return reader_of_blobs_.quick(key); }
+    // nullopt: absent. With `slow`: sets it, answers nullopt and counts nothing where a large file must be hashed first.
+    Answer<std::optional<BlobFile>> blob(const Caller& caller, std::string_view instance, const Digest& key,
+                                         bool* slow = nullptr);
     Answer<bool> has_blob(const Caller& caller, std::string_view instance, const BlobName& blob);
     // `size`: what the client says it is, checked against the bytes.
     Answer<Written> put_blob(const Caller& caller, std::string_view instance, const BlobName& blob, ByteView bytes);

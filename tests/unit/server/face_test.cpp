@@ -26,7 +26,10 @@ struct Faced {
         const HttpHead head{method, target, authorization, coding, accept, "0", body.size()};
         HttpWork work;
         if (auto early = face.plan(head, work)) return std::move(*early);
-        return face.answer(work, as_bytes(body));
+        auto response = face.answer(work, as_bytes(body));
+        if (response) return std::move(*response);
+        work.blocks = true;
+        return face.answer(work, as_bytes(body)).value();
     }
     unsigned status(Method method, const std::string& target, std::string_view body = {},
                     const std::string& token = "0123456789abcdef") {

@@ -121,6 +121,13 @@ TEST(Service, LargeBlobsAreReadInParts) {
     EXPECT_EQ(as_text(part), std::string_view(big).substr(2'999'000));
     EXPECT_FALSE((*file)->read(2'999'001, part).ok());
     EXPECT_FALSE((*file)->read(UINT64_MAX, part).ok());
+    // One that is not known is not hashed where that would hold others up.
+    big[0] = '!';
+    s.put(big);
+    bool slow = false;
+    const auto put_off = s->blob(reader, "", name_of(big), &slow);
+    EXPECT_TRUE(put_off.ok() && !put_off->has_value() && slow);
+    ASSERT_TRUE(s->blob(reader, "", name_of(big))->has_value()) << "the control";
 }
 
 TEST(Service, ADamagedBlobIsAMissWhetherItWasTrustedOrNot) {
