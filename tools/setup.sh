@@ -14,10 +14,10 @@ packages=(
   libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
   # tests and checks
   libgtest-dev libgmock-dev libbenchmark-dev glslang-tools glslc spirv-cross clang clang-format clang-tidy libclang-rt-14-dev
-  python3 python3-yaml python3-jsonschema git make curl nginx-extras bazel-bootstrap slurm-wlm munge zstd openssl
+  python3 python3-yaml python3-jsonschema git make curl nginx-extras bazel-bootstrap slurm-wlm munge zstd openssl groff-base
   chromium chromium-driver
 )
-bench=(qt6-shader-baker)
+bench=(qt6-shader-baker wrk)
 for argument in "$@"; do
   case "$argument" in
     --bench) packages+=("${bench[@]}") ;;
