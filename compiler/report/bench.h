@@ -23,7 +23,8 @@ public:
     virtual const DeviceInfo& info() const = 0;
     // The results of one dispatch with the validation layer on.
     virtual Result<std::vector<float>> run(const Kernel& kernel, const std::vector<Resource>& resources, const Draw& draw) = 0;
-    // Loops are chosen so that a dispatch takes at least `least_ms`, and come back in draw.loops. The validation layer is off.
+    // Loops, from draw.loops on, are chosen so that a dispatch takes at least `least_ms`, and come back in draw.loops. The
+    // validation layer is off.
     virtual Result<Timed> time(const Kernel& kernel, const std::vector<Resource>& resources, Draw& draw, unsigned repeats,
                                double least_ms) = 0;
     // Compiles and runs text of a bake: results[i] for i < draw.results. Bindings as kernel_text() says.

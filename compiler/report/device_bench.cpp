@@ -85,7 +85,6 @@ public:
 
     Result<Timed> time(const Kernel& kernel, const std::vector<Resource>& resources, Draw& draw, unsigned repeats,
                        double least_ms) override {
-        draw.loops = 4;
         // Room for all the pixels that enlarging may come to.
         const uint32_t fewest = draw.groups;
         draw.results *= most_enlarged;
