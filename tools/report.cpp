@@ -124,7 +124,7 @@ const Verb verb_report{
     0,
     {{"--output", "-o", "DIR", "write report.json, report.csv and report.html there"},
      {"--family", nullptr, "N", "number or name of a family; default all", true},
-     {"--quick", nullptr, nullptr, "smaller pictures, times of one scene: minutes in place of an hour"},
+     {"--quick", nullptr, nullptr, "smaller pictures, times of one scene: two minutes in place of many"},
      {"--budget", nullptr, "METRIC=VALUE", "say which member of each family is cheapest within it: relmse=1e-3", true},
      {"--library", nullptr, "DIR", "the GLSL library; default: what was installed with this program"},
      {"--icd", nullptr, "FILE", "Vulkan driver manifest; default $KILN_ICD, else lavapipe"},
