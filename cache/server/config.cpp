@@ -125,7 +125,7 @@ const std::vector<std::pair<std::string_view, Take>>& table() {
         {"timeouts.idle", [](auto v, Config& c) { return seconds(v, c.http.idle_timeout); }},
         {"timeouts.drain", [](auto v, Config& c) { return seconds(v, c.drain); }},
         {"threads.io", [](auto v, Config& c) { return number(v, c.http.io_threads, 1, 64); }},
-        {"threads.work", [](auto v, Config& c) { return number(v, c.http.work_threads, 1, 256); }},
+        {"threads.work", [](auto v, Config& c) { return number(v, c.http.work_threads, 0, 256); }},
         {"log",
          [](auto v, Config& c) {
              return choice(v, c.log, {{"off", LogLevel::off}, {"events", LogLevel::events}, {"requests", LogLevel::requests}});

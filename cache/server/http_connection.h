@@ -283,6 +283,7 @@ private:
             if (auto response = answer()) return respond(std::move(*response));
             work_.blocks = true;
         }
+        if (shared_.options.work_threads == 0) return respond(answer().value());
         // The pool's handler gives its share of the connection away, so that the last one is dropped on the loop's thread.
         net::post(shared_.pool, [self = this->shared_from_this()]() mutable {
             auto response = std::make_shared<HttpResponse>(self->answer().value());

@@ -21,6 +21,8 @@ struct HttpOptions {
     std::string address = "127.0.0.1";  // a numeric one
     uint16_t port = 0;                  // 0: the kernel chooses
     std::string certificate, key;       // files in PEM; both empty: no TLS
+    // 0 work threads: what waits for the disk does so on the I/O thread, which saves a request two changes of thread and lets
+    // everybody wait while entries are evicted.
     unsigned io_threads = 1, work_threads = 4;
     uint32_t header_bytes = 16 * 1024;
     size_t connections = 4096;

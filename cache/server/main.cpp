@@ -36,7 +36,7 @@ Settings come from FILE (YAML) and from flags of the same names, which win:
   --sync none|file|folder what a stored entry survives besides the server's death (file)
   --log off|events|requests   JSON lines on standard error (requests)
   --limits.blob SIZE  --limits.action SIZE  --limits.opaque_action SIZE  --limits.in_flight SIZE
-  --limits.connections N  --limits.header BYTES  --threads.io N  --threads.work N
+  --limits.connections N  --limits.header BYTES  --threads.io N  --threads.work N (0: none)
   --timeouts.head S  --timeouts.body S  --timeouts.write S  --timeouts.idle S  --timeouts.drain S
   --verify_again S        a blob read again within S seconds and unchanged on disk is not hashed anew (600)
   --check                 read the settings and the token file, say what is wrong, and end

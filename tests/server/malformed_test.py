@@ -175,6 +175,22 @@ def compressed(binary):
         equal(server.call("GET", "/cas/" + key(plain), Accept_Encoding="zstd;q=0").body, plain, "refused by weight")
 
 
+def no_pool(binary):
+    """Without a pool of threads the same requests get the same answers."""
+    with Cached(binary, threads_work=0) as server:
+        large = random.Random(7).randbytes(3_000_000)
+        for blob in (BLOB, large):
+            equal(server.get(blob).status, 404, "nothing yet")
+            equal(server.put(blob), 201, "PUT")
+            equal(server.put(blob), 200, "PUT again")
+            equal(server.get(blob).body, blob, "GET")
+        equal(server.call("PUT", "/cas/" + NAME, b"other").status, 400, "wrong bytes")
+        for page in ("/status", "/metrics"):
+            equal(server.call("GET", page).status, 200, page)
+        good = request(headers=("Host: h", "Connection: close"))
+        equal(statuses(server.raw(request() * 200 + good)), [200] * 201, "many requests at once")
+
+
 def noise(binary):
     """Mutations of good requests, seeded: whatever comes back is HTTP, and the server lives."""
     random.seed(4)
@@ -207,4 +223,4 @@ def noise(binary):
 
 
 if __name__ == "__main__":
-    main([heads, targets, methods, bodies, compressed, noise])
+    main([heads, targets, methods, bodies, compressed, no_pool, noise])

@@ -4,7 +4,7 @@
 usage: cached.py KILN_CACHED [--seconds S] [--rounds N] [--where DIR]. Both keep their files below DIR, by default in memory: a
 disk's own noise (ext4 looks for an inode for half a millisecond where many were deleted lately) is in both and tells nothing. nginx serves the same bytes as static files and takes PUTs by its DAV
 module, neither verified nor flushed; kiln-cached verifies both and here flushes nothing either (`file` is the row with its
-default, which does). Neither writes a request log. Rounds alternate between the servers; a ratio is the median of the rounds',
+default, which does; "no pool" is --threads.work 0: like nginx's worker, it writes files on the thread that serves sockets). Neither writes a request log. Rounds alternate between the servers; a ratio is the median of the rounds',
 over 1 where kiln-cached is faster. "cpu" is the server's processor time a request, which a busy machine disturbs less.
 """
 import argparse
@@ -154,7 +154,8 @@ def main():
     binary = os.path.abspath(options.binary)
     tempfile.tempdir = options.where
     print(f"{'':<26} {'kiln-cached':>10} {'nginx':>10} {'ratio':>7} {'cpu':>11} {'nginx':>9} {'ratio':>7}")
-    with Nginx() as nginx, Cached(binary, log="off", limit="60GiB") as ours, Cached(binary, log="off", limit="60GiB", sync="file") as flushed:
+    with Nginx() as nginx, Cached(binary, log="off", limit="60GiB") as ours, Cached(binary, log="off", limit="60GiB", sync="file") as flushed, \
+            Cached(binary, log="off", limit="60GiB", threads_work=0) as alone:
         home = nginx.home
         for size in SIZES:
             blob = os.urandom(size)
@@ -168,6 +169,7 @@ def main():
             for c in CONNECTIONS:
                 put = lambda server: wrk(server, "", c, options.seconds, Puts(home, size, options.seconds, rate).path)
                 ratios(f"PUT {size // 1024:>2} KiB, {c} connections", lambda: put(ours), lambda: put(nginx), options.rounds)
+                ratios("  the same, no pool", lambda: put(alone), lambda: put(nginx), options.rounds)
                 if size == SIZES[1]:
                     ratios("  the same, --sync file", lambda: put(flushed), lambda: put(nginx), 1)
     memory(binary)
