@@ -7,6 +7,7 @@
 // A damaged record reads as absent, so a memo can cost time but never give a wrong result.
 #include "compiler/memo.h"
 
+#include <filesystem>
 #include <map>
 
 #include "compiler/space/set_wire.h"
@@ -80,7 +81,16 @@ bool look_at(Seen& seen, const std::vector<SourceRead>& files, const std::string
     return true;
 }
 
+// A record may come from a server that nobody vouches for, so what it names must be plain files: reading a device or a pipe may
+// have no end.
+bool special(const std::string& path) {
+    std::error_code failed;
+    const auto status = std::filesystem::status(path, failed);
+    return std::filesystem::is_other(status);
+}
+
 std::optional<SourceRead> now(Files& files, const std::string& path) {
+    if (special(path)) return std::nullopt;
     const auto text = files.read(path);
     if (!text.ok()) return std::nullopt;
     SourceRead read;

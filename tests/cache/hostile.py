@@ -3,8 +3,10 @@
 succeeds with one warning, and nothing leaves for another host. The control of each is the same server being honest."""
 import concurrent.futures
 import hashlib
+import os
 import pathlib
 import socket
+import struct
 import sys
 import threading
 import time
@@ -120,6 +122,16 @@ def other(server, path, own):
     return next(v for p, v in sorted(server.kept.items()) if p.rsplit("/", 1)[0] == folder and p != path and v != own)
 
 
+def memo_of(path, names):
+    """An action's value as kiln writes it: this build depends on files of these names, what do they hold?"""
+    record = b"\0" + struct.pack("<Q", len(names)) + b"".join(struct.pack("<Q", len(n)) + n for n in names)
+    return field(5, b"kilnrec1" + bytes.fromhex(path[-64:]) + struct.pack("<Q", len(record)) + record + struct.pack("<Q", 0))
+
+
+def memo_attack(*names):
+    return on_get(lambda s, c, p, v: reply(c, 200, memo_of(p, [n() for n in names]) if "/ac/" in p else v))
+
+
 bomb = zlib.compressobj(9, zlib.DEFLATED, 31)
 BOMB = bomb.compress(bytes(64 << 20)) + bomb.flush()
 
@@ -159,12 +171,18 @@ ATTACKS = {
     "a huge action": on_get(lambda s, c, p, v: reply(c, 200, v + field(99, bytes(3 << 20)) if "/ac/" in p else v)),
     "a huge blob's name": on_get(lambda s, c, p, v: reply(
         c, 200, v.replace(b"\x10", b"\x10\xff\xff\xff\xff\xff\xff\xff\x3f", 1) if "/ac/" in p else v)),
+    "a build of a device": memo_attack(lambda: b"/dev/zero"),
+    "a build of a pipe": memo_attack(lambda: os.path.abspath("pipe").encode()),
+    "a build of many files": memo_attack(*[lambda: os.urandom(8).hex().encode()] * 50000),
+    "a build without end": memo_attack(lambda: os.urandom(8).hex().encode()),
+    "a build of a name with a NUL": memo_attack(lambda: b"p/paint.frag\0.glsl"),
     "writes refused": lambda s, c, m, p, b: reply(c, 507) if m == "PUT" else honest(s, c, m, p, b),
     "writes lost": lambda s, c, m, p, b: reply(c, 201) if m == "PUT" else honest(s, c, m, p, b),
     "everything is there": lambda s, c, m, p, b: reply(c, 200, length=7) if m == "HEAD" else honest(s, c, m, p, b),
 }
 # What a build does not notice, since nothing that it read was wrong.
-UNNOTICED = {"writes lost", "everything is there", "an endless 404", "a huge blob's name"}
+UNNOTICED = {"writes lost", "everything is there", "an endless 404", "a huge blob's name",
+             "a build of a device", "a build of a pipe", "a build of many files", "a build without end", "a build of a name with a NUL"}
 
 
 def attacked(number, name, kept, trap):
@@ -192,6 +210,7 @@ def attacked(number, name, kept, trap):
 
 def main():
     server, trap = Hostile(), Hostile()
+    os.mkfifo("pipe")
     build("p/m.yaml", "alone.kiln", "--cache", "none")
     first = build("p/m.yaml", "first.kiln", "--cache", "none", "--cache", server.url, KILN_CACHE_TOKEN=TOKEN)
     same("alone.kiln", "first.kiln", "honest")
