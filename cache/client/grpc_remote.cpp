@@ -388,7 +388,7 @@ void GrpcRemote::write_streams(std::span<const RemoteUpload> blobs, const std::v
         Digest dice;
         for (uint8_t& byte : dice.bytes) byte = static_cast<uint8_t>(random());
         std::string uuid = dice.hex().substr(0, 32);
-        for (const size_t dash : {20, 16, 12, 8}) uuid.insert(dash, "-");
+        for (const size_t dash : {size_t{20}, size_t{16}, size_t{12}, size_t{8}}) uuid.insert(dash, "-");
         calls[c].stream =
             std::make_unique<Upload>(*streams_, context_of(calls[c], blob.bytes.size()),
                                      upload_name(instance_, uuid, {blob.key, blob.bytes.size()}), blob.bytes, std::move(done));
@@ -431,7 +431,7 @@ std::shared_ptr<grpc::Channel> open_grpc_channel(const RemoteUrl& url, const Grp
 
 }  // namespace kiln
 
-extern "C" __attribute__((visibility("default"))) kiln::OpenGrpcRemote kiln_grpc_open_2;
+__attribute__((visibility("default"))) kiln::OpenGrpcRemote kiln_grpc_open_2 __asm__("kiln_grpc_open_2");
 
 kiln::Result<std::unique_ptr<kiln::RemoteStore>> kiln_grpc_open_2(const kiln::RemoteUrl& url,
                                                                   const kiln::GrpcRemoteOptions& options,

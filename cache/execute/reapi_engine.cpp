@@ -6,7 +6,7 @@
 #include "cache/execute/reapi_action.h"
 #include "cache/protocol/action_result.h"
 
-extern "C" kiln::OpenGrpcRemote kiln_grpc_open_2;
+kiln::OpenGrpcRemote kiln_grpc_open_2 __asm__("kiln_grpc_open_2");
 
 namespace kiln {
 
@@ -317,7 +317,7 @@ Outcome ReapiEngine::fetch(Node& node, const Job& job, const ActionResult& resul
 
 }  // namespace kiln
 
-extern "C" __attribute__((visibility("default"))) kiln::OpenReapiEngine kiln_grpc_open_engine_1;
+__attribute__((visibility("default"))) kiln::OpenReapiEngine kiln_grpc_open_engine_1 __asm__("kiln_grpc_open_engine_1");
 
 kiln::Result<std::unique_ptr<kiln::Engine>> kiln_grpc_open_engine_1(std::span<const kiln::RemoteUrl> nodes,
                                                                     const kiln::ReapiOptions& options) {

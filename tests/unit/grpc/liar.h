@@ -15,7 +15,7 @@
 #include "cache/protocol/resource_name.h"
 #include "compiler/base/bytes.h"
 
-extern "C" kiln::OpenGrpcRemote kiln_grpc_open_2;
+kiln::OpenGrpcRemote kiln_grpc_open_2 __asm__("kiln_grpc_open_2");
 
 namespace kiln::testing {
 

@@ -7,7 +7,7 @@
 #include "cache/execute/reapi_action.h"
 #include "tests/unit/grpc/liar.h"
 
-extern "C" kiln::OpenReapiEngine kiln_grpc_open_engine_1;
+kiln::OpenReapiEngine kiln_grpc_open_engine_1 __asm__("kiln_grpc_open_engine_1");
 
 namespace kiln::testing {
 namespace {
