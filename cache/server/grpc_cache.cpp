@@ -253,6 +253,10 @@ private:
         auto file = shared_.service.blob(caller, instance, name.digest);
         if (!file.ok()) return status_of(file.refused());
         if (!file->has_value() || (*file)->size() != name.size) return {grpc::StatusCode::NOT_FOUND, "not in the cache"};
+        if (const ByteView kept = (*file)->memory(); !kept.empty()) {
+            out.assign(as_text(kept));
+            return grpc::Status::OK;
+        }
         out.resize(name.size);
         if (!(*file)->read(0, {reinterpret_cast<uint8_t*>(out.data()), out.size()}).ok()) {
             out.clear();
