@@ -134,6 +134,7 @@ HttpResponse HttpFace::refused(const Refused& refused) const {
 }
 
 std::optional<HttpResponse> HttpFace::plan(const HttpHead& head, HttpWork& work) {
+    work = HttpWork();
     work.method = head.method;
     const auto target = parse_target(head.target);
     const auto token = token_of(head.authorization);

@@ -135,7 +135,9 @@ TEST(HttpFace, LimitsBeforeTheBody) {
     EXPECT_FALSE(f.face.plan(head, work).has_value());
     head.method = Method::get;
     head.length = 1;
-    EXPECT_EQ(f.face.plan(head, work)->status, 413u) << "a body on a GET";
+    const auto body_on_get = f.face.plan(head, work);
+    ASSERT_TRUE(body_on_get.has_value()) << "what the last request left in `work` counts";
+    EXPECT_EQ(body_on_get->status, 413u);
 }
 
 TEST(HttpFace, WebDav) {
