@@ -46,7 +46,7 @@ private:
         grpc::CallbackServerContext* context;
     };
     std::shared_ptr<Shared> shared_;
-    std::shared_ptr<grpc::Alarm> alarm_;
+    grpc::Alarm alarm_;
 };
 
 }  // namespace kiln

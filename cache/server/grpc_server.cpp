@@ -59,22 +59,18 @@ void set_digest(reapi::Digest* out, const BlobName& name) {
     out->set_size_bytes(static_cast<int64_t>(name.size));
 }
 
-CallTimer::CallTimer(grpc::CallbackServerContext* context, std::chrono::seconds after)
-    : shared_(std::make_shared<Shared>()), alarm_(std::make_shared<grpc::Alarm>()) {
+CallTimer::CallTimer(grpc::CallbackServerContext* context, std::chrono::seconds after) : shared_(std::make_shared<Shared>()) {
     shared_->context = context;
-    // The alarm lives until its callback has run, which cancelling makes happen at once.
-    alarm_->Set(std::chrono::system_clock::now() + after, [shared = shared_, alarm = alarm_](bool expired) {
+    // What the alarm calls belongs to gRPC until it has run, which the alarm's end makes happen at once.
+    alarm_.Set(std::chrono::system_clock::now() + after, [shared = shared_](bool expired) {
         const std::lock_guard lock(shared->mutex);
         if (expired && shared->context != nullptr) shared->context->TryCancel();
     });
 }
 
 CallTimer::~CallTimer() {
-    {
-        const std::lock_guard lock(shared_->mutex);
-        shared_->context = nullptr;
-    }
-    alarm_->Cancel();
+    const std::lock_guard lock(shared_->mutex);
+    shared_->context = nullptr;
 }
 
 struct GrpcCalls {

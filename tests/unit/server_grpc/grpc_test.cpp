@@ -278,7 +278,7 @@ TEST_F(Grpc, RefusesAMessageThatIsTooLargeBeforeItIsRead) {
 TEST_F(Grpc, StreamsBlobsBothWays) {
     start();
     std::string bytes;
-    for (int i = 0; bytes.size() < 5'000'000; ++i) bytes += std::to_string(i * 7919) + " ";
+    for (int64_t i = 0; bytes.size() < 5'000'000; ++i) bytes += std::to_string(i * 7919) + " ";
     const BlobName name = named(bytes);
     int64_t committed = 0;
     ASSERT_TRUE(upload({upload_name("main", "u1", name), bytes}, &committed).ok());
