@@ -18,7 +18,7 @@ ORDER = ["base", "runtime", "manifest", "space", "split", "reflect", "toolchain"
 # Third-party header prefix -> the files that may include it.
 THIRD_PARTY = {
     "xxhash": {"compiler/base/xxh3.cpp"},
-    "openssl/": {"compiler/base/sha256.cpp", "cache/client/signature.cpp", "cache/server/stream_hash.cpp"},
+    "openssl/": {"compiler/base/sha256.cpp", "cache/client/signature.cpp"},
     # Beast's connection is a template over its stream (TCP, TLS), hence a header beside the one source file.
     "boost/": {"cache/server/http_server.cpp", "cache/server/http_connection.h"},
     # Services derive from generated classes, a source each; what they share is in the header.

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cerrno>
 
-#include "cache/server/stream_hash.h"
 
 namespace kiln {
 

@@ -27,23 +27,35 @@ struct Fast {
 Digest sha256(ByteView bytes);
 Fast xxh3(ByteView bytes);
 
+// SHA-256 of bytes that are never in memory all at once.
+class StreamHash {
+public:
+    StreamHash();
+    StreamHash(const StreamHash&) = delete;
+    StreamHash& operator=(const StreamHash&) = delete;
+    ~StreamHash();
+    void update(ByteView bytes);
+    Digest finish();  // once
+
+private:
+    void* state_;
+};
+
 // Hashes named, length-prefixed fields, so that no two field lists collide by concatenation. `domain` carries a version:
 // "kiln.module.v1".
 class KeyHasher {
 public:
     explicit KeyHasher(std::string_view domain);
-    KeyHasher(const KeyHasher&) = delete;
-    KeyHasher& operator=(const KeyHasher&) = delete;
-    ~KeyHasher();
     KeyHasher& field(std::string_view name, ByteView value);
     KeyHasher& field(std::string_view name, std::string_view value) { return field(name, as_bytes(value)); }
     KeyHasher& field(std::string_view name, const char* value) { return field(name, std::string_view(value)); }
     KeyHasher& field(std::string_view name, uint64_t value);
     KeyHasher& field(std::string_view name, const Digest& value) { return field(name, ByteView(value.bytes)); }
-    Digest finish();
+    Digest finish() { return hash_.finish(); }
 
 private:
-    void* state_;
+    void number(uint64_t value);
+    StreamHash hash_;
 };
 
 }  // namespace kiln
