@@ -58,7 +58,9 @@ void write_options(WireWriter& out, const Options& options) {
 
 Options read_options(WireReader& in) {
     Options out;
-    out.undefined_macros = static_cast<UndefinedMacros>(in.u8());
+    const uint8_t undefined = in.u8();
+    if (undefined > static_cast<uint8_t>(UndefinedMacros::zero)) in.fail();
+    out.undefined_macros = static_cast<UndefinedMacros>(undefined);
     const uint8_t optimise = in.u8();
     if (optimise > static_cast<uint8_t>(Optimise::size)) in.fail();
     out.optimise = static_cast<Optimise>(optimise);
@@ -97,7 +99,9 @@ SlotLayout read_layout(WireReader& in) {
     SlotLayout out;
     for (size_t n = in.count(40); n > 0 && in.ok(); --n) {
         Slot s;
-        s.kind = static_cast<ResourceKind>(in.u8());
+        const uint8_t kind = in.u8();
+        if (kind > static_cast<uint8_t>(ResourceKind::push_constants)) in.fail();
+        s.kind = static_cast<ResourceKind>(kind);
         s.name = in.text();
         for (uint32_t* field : {&s.set, &s.binding, &s.buffer, &s.texture, &s.sampler, &s.image, &s.uav, &s.metal_buffer,
                                 &s.metal_texture, &s.unit_offset})

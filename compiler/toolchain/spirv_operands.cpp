@@ -14,6 +14,7 @@ constexpr size_t header_words = 5;
 constexpr uint32_t magic = 0x07230203;
 constexpr uint16_t op_entry_point = 15;
 constexpr size_t known_opcodes = 400;
+constexpr uint32_t most_ids = 4'194'304;  // SPIR-V specification, section 2.17: what memory is taken for follows from this
 
 struct Range {
     uint16_t first, last;
@@ -132,6 +133,7 @@ public:
     bool run() {
         if (words_.size() < header_words || words_[0] != magic) return false;
         bound_ = words_[3];
+        if (bound_ > most_ids) return false;
         out_.instructions.clear();
         out_.id_words.clear();
         out_.instructions.reserve(words_.size() / 4);
