@@ -4,6 +4,8 @@
 
 #include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/resource_quota.h>
+#include <grpcpp/security/tls_certificate_provider.h>
+#include <grpcpp/security/tls_credentials_options.h>
 
 #include <ctime>
 
@@ -101,17 +103,16 @@ Result<std::unique_ptr<GrpcServer>> GrpcServer::start(Service& service, std::fun
 
     std::shared_ptr<grpc::ServerCredentials> credentials = grpc::InsecureServerCredentials();
     if (!options.certificate.empty()) {
-        grpc::SslServerCredentialsOptions tls;
-        grpc::SslServerCredentialsOptions::PemKeyCertPair pair;
-        for (const auto& [file, into] :
-             {std::pair(&options.certificate, &pair.cert_chain), std::pair(&options.key, &pair.private_key)}) {
-            auto text = DiskFiles().read(*file);
+        for (const std::string& file : {options.certificate, options.key}) {
+            const auto text = DiskFiles().read(file);
             KILN_TRY(text);
-            if (!text->has_value()) return input_error(*file + ": no such file");
-            *into = std::string(as_text(as_bytes(**text)));
+            if (!text->has_value()) return input_error(file + ": no such file");
         }
-        tls.pem_key_cert_pairs.push_back(std::move(pair));
-        credentials = grpc::SslServerCredentials(tls);
+        namespace tls = grpc::experimental;
+        tls::TlsServerCredentialsOptions how(std::make_shared<tls::FileWatcherCertificateProvider>(
+            options.key, options.certificate, static_cast<unsigned>(options.look_again.count())));
+        how.watch_identity_key_cert_pairs();
+        credentials = tls::TlsServerCredentials(how);
     }
 
     grpc::EnableDefaultHealthCheckService(true);

@@ -19,6 +19,8 @@ struct GrpcOptions {
     std::string address = "127.0.0.1";
     uint16_t port = 0;             // 0: the kernel chooses
     std::string certificate, key;  // PEM files; empty: plain text
+    // A certificate that was replaced is taken within so long, with no word to the server; a broken one is not.
+    std::chrono::seconds look_again{10};
     // What a stream may take in all: this, and its size at `slowest` bytes a second.
     std::chrono::seconds patience{60};
     uint64_t slowest = 64 * 1024;

@@ -572,6 +572,15 @@ TEST_F(Grpc, SpeaksTlsToWhoTrustsItsCertificate) {
     EXPECT_EQ(ask(grpc::SslCredentials(trust)), StatusCode::OK);
     EXPECT_EQ(ask(grpc::SslCredentials({})), StatusCode::UNAVAILABLE);
     EXPECT_EQ(ask(grpc::InsecureChannelCredentials()), StatusCode::UNAVAILABLE);
+    // A new certificate is served to new connections without a restart.
+    ASSERT_EQ(std::system(make.c_str()), 0);
+    trust.pem_root_certs = read_file(options.certificate);
+    StatusCode got = StatusCode::UNKNOWN;
+    for (int i = 0; i < 100 && got != StatusCode::OK; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        got = ask(grpc::SslCredentials(trust));
+    }
+    EXPECT_EQ(got, StatusCode::OK);
 }
 
 TEST(ResourceName, ReadsAndWritesTheFourForms) {
