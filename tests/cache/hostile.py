@@ -15,6 +15,9 @@ import zlib
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from peers import build, check, in_folder, same
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "server"))
+from protobuf_wire import field, varint
+
 TOKEN = "tok-3141592653"
 
 
@@ -96,18 +99,6 @@ def forever(connection, piece, pause=0.0, most=20):
 
 def start(connection, head):
     connection.sendall(b"HTTP/1.1 200 OK\r\n" + head + b"\r\n")
-
-
-def varint(n):
-    out = b""
-    while n >= 0x80:
-        out += bytes([n & 0x7F | 0x80])
-        n >>= 7
-    return out + bytes([n])
-
-
-def field(number, payload):
-    return varint(number << 3 | 2) + varint(len(payload)) + payload
 
 
 def with_path(value, path):

@@ -6,7 +6,7 @@ from peers import Home, run
 
 
 class Workspace:
-    """Two rules, one on the other, in a workspace that fetches nothing."""
+    """Two rules, one on the other, the second's output too large for a message of gRPC, in a workspace that fetches nothing."""
 
     def __init__(self, home, bazel, flags):
         self.path, self.bazel, self.flags = home / "ws", [*bazel, f"--output_user_root={home}/root"], flags
@@ -17,7 +17,7 @@ class Workspace:
         (self.path / "in.txt").write_text("hello\n")
         (self.path / "BUILD").write_text(
             'genrule(name="a", srcs=["in.txt"], outs=["a.txt"], cmd="tr a-z A-Z < $(location in.txt) > $@")\n'
-            'genrule(name="b", srcs=["a.txt"], outs=["b.txt"], cmd="cat $(location a.txt) $(location a.txt) > $@")\n')
+            'genrule(name="b", srcs=["a.txt"], outs=["b.txt"], cmd="for i in 1 2 3 4 5 6; do head -c 1000000 /dev/zero | tr \\\\0 $$i; done | cat $(location a.txt) - > $@")\n')
 
     def __enter__(self):
         return self

@@ -14,23 +14,12 @@ import threading
 import time
 
 from cached import Cached, Failed, check, equal, key, main
+from protobuf_wire import field, varint
 
 ROUNDS = int(os.environ.get("KILN_KILL_ROUNDS", "8"))
 SEED = int(os.environ.get("KILN_KILL_SEED", "0")) or random.SystemRandom().randrange(1, 1 << 32)
 WORKERS = 6
 OK = (200, 201, 204)
-
-
-def varint(n):
-    out = b""
-    while n >= 0x80:
-        out += bytes([n & 0x7F | 0x80])
-        n >>= 7
-    return out + bytes([n])
-
-
-def field(number, payload):
-    return varint(number << 3 | 2) + varint(len(payload)) + payload
 
 
 def action_value(blobs, salt):
