@@ -170,7 +170,7 @@ TEST(BlobReader, WhatIsKeptInMemoryIsBoundedAndFollowsTheFile) {
     std::filesystem::create_symlink("/etc/hostname", path);
     EXPECT_FALSE(reads.open(name_of(blob))->has_value()) << "a link";
     std::vector<std::string> many;
-    for (int i = 0; i < 600; ++i) many.push_back(std::to_string(i) + std::string(60'000, 'm'));
+    for (int i = 0; i < 900; ++i) many.push_back(std::to_string(i) + std::string(30'000, 'm'));
     for (const std::string& one : many) s.put(one);
     std::this_thread::sleep_for(std::chrono::milliseconds(120));
     for (int round = 0; round < 3; ++round)

@@ -553,6 +553,7 @@ TEST_F(Grpc, SpeaksTlsToWhoTrustsItsCertificate) {
     GrpcOptions options;
     options.certificate = folder_.path() + "/cert.pem";
     options.key = folder_.path() + "/key.pem";
+    options.look_again = std::chrono::seconds(1);
     const std::string make =
         "openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -days 2 -subj /CN=localhost "
         "-addext subjectAltName=IP:127.0.0.1 -keyout " +
@@ -576,8 +577,8 @@ TEST_F(Grpc, SpeaksTlsToWhoTrustsItsCertificate) {
     ASSERT_EQ(std::system(make.c_str()), 0);
     trust.pem_root_certs = read_file(options.certificate);
     StatusCode got = StatusCode::UNKNOWN;
-    for (int i = 0; i < 100 && got != StatusCode::OK; ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    for (int i = 0; i < 150 && got != StatusCode::OK; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
         got = ask(grpc::SslCredentials(trust));
     }
     EXPECT_EQ(got, StatusCode::OK);
