@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -20,7 +21,41 @@ std::mutex progress_mutex;
 struct Rate {
     std::string what;
     std::chrono::steady_clock::time_point start, shown;
+
+    // ", 12 s left" once that can be told.
+    std::string left(std::chrono::steady_clock::time_point now, size_t done, size_t total) const {
+        const double seconds = std::chrono::duration<double>(now - start).count();
+        if (done == 0 || done >= total || seconds <= 1.0) return {};
+        const double rest = seconds * static_cast<double>(total - done) / static_cast<double>(done);
+        return ", " + std::to_string(std::llround(rest)) + " s left";
+    }
 };
+
+Progress terminal_progress() {
+    return [rate = Rate()](const char* what, size_t done, size_t total) mutable {
+        const std::lock_guard lock(progress_mutex);
+        const auto now = std::chrono::steady_clock::now();
+        if (rate.what != what) rate = {what, now, {}};
+        if (done < total && now - rate.shown < std::chrono::milliseconds(100)) return;
+        rate.shown = now;
+        std::fprintf(stderr, "\r\x1b[K%s %zu/%zu%s", what, done, total, rate.left(now, done, total).c_str());
+        std::fflush(stderr);
+        progress_shown = true;
+    };
+}
+
+// A CI log: whole lines, few of them, since a job that says nothing for minutes is taken for dead.
+Progress log_progress(std::chrono::seconds apart) {
+    const auto begun = std::chrono::steady_clock::now();
+    return [apart, rate = Rate{{}, begun, begun}](const char* what, size_t done, size_t total) mutable {
+        const std::lock_guard lock(progress_mutex);
+        const auto now = std::chrono::steady_clock::now();
+        if (rate.what != what) rate = {what, now, rate.shown};
+        if (now - rate.shown < apart) return;
+        rate.shown = now;
+        std::fprintf(stderr, "kiln: %s %zu/%zu%s\n", what, done, total, rate.left(now, done, total).c_str());
+    };
+}
 
 }  // namespace
 
@@ -75,22 +110,13 @@ int finish(const std::string& text, int code) {
     return status.ok() ? code : print_error(status.error());
 }
 
-Progress terminal_progress() {
+Progress console_progress() {
     const char* const term = std::getenv("TERM");
-    if (::isatty(STDERR_FILENO) != 1 || (term != nullptr && std::strcmp(term, "dumb") == 0)) return {};
-    return [rate = Rate()](const char* what, size_t done, size_t total) mutable {
-        const std::lock_guard lock(progress_mutex);
-        const auto now = std::chrono::steady_clock::now();
-        if (rate.what != what) rate = {what, now, {}};
-        if (done < total && now - rate.shown < std::chrono::milliseconds(100)) return;
-        rate.shown = now;
-        const double seconds = std::chrono::duration<double>(now - rate.start).count();
-        std::fprintf(stderr, "\r\x1b[K%s %zu/%zu", what, done, total);
-        if (done != 0 && done < total && seconds > 1.0)
-            std::fprintf(stderr, ", %.0f s left", seconds * static_cast<double>(total - done) / static_cast<double>(done));
-        std::fflush(stderr);
-        progress_shown = true;
-    };
+    if (::isatty(STDERR_FILENO) == 1 && (term == nullptr || std::strcmp(term, "dumb") != 0)) return terminal_progress();
+    const char* const asked = std::getenv("KILN_PROGRESS");
+    if (asked != nullptr && std::strcmp(asked, "off") == 0) return {};
+    const bool number = asked != nullptr && std::strspn(asked, "0123456789") == std::strlen(asked) && *asked != '\0';
+    return log_progress(std::chrono::seconds(number ? std::strtol(asked, nullptr, 10) : 30));
 }
 
 void clear_progress() {

@@ -23,9 +23,9 @@ Status print_out(const std::string& text);
 // print_out, and the exit code: `code`, or 3 when the output could not be written.
 int finish(const std::string& text, int code = 0);
 
-// A line that rewrites itself with a count and the time left, on a terminal only; empty function elsewhere. Call clear_progress
-// before printing anything else.
-Progress terminal_progress();
+// What is done and the time left: on a terminal a line that rewrites itself; elsewhere a whole line every 30 s, or every
+// $KILN_PROGRESS s ("off": none). Call clear_progress before printing anything else.
+Progress console_progress();
 void clear_progress();
 
 }  // namespace kiln

@@ -80,7 +80,7 @@ Result<std::unique_ptr<Execution>> Execution::open(const Args& args, Store& stor
     auto distributor = Distributor::make(*out->engine, store, tools, worker_program(), std::chrono::seconds(*timeout));
     KILN_TRY(distributor);
     out->distributor = std::move(*distributor);
-    out->distributor->progress = terminal_progress();
+    out->distributor->progress = console_progress();
     return out;
 }
 

@@ -82,7 +82,7 @@ Result<Report> measure_all(const Args& args, DiskFiles& files, Toolchain& tools,
     choice.icd = args.value("--icd");
     auto bench = open_device_bench(choice, tools, library);
     KILN_TRY(bench);
-    return run_report(options, library, tools, **bench, terminal_progress());
+    return run_report(options, library, tools, **bench, console_progress());
 }
 
 int run_report_verb(const Args& args) {

@@ -126,7 +126,7 @@ Result<std::unique_ptr<Session>> Session::open(const Args& args) {
     KILN_TRY(execution);
     session->execution = std::move(*execution);
     session->context =
-        std::make_unique<PassContext>(PassContext{session->files, *store, *session->tools, *session->jobs, terminal_progress(),
+        std::make_unique<PassContext>(PassContext{session->files, *store, *session->tools, *session->jobs, console_progress(),
                                                   session->execution ? session->execution->distributor.get() : nullptr});
     return session;
 }

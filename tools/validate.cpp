@@ -107,7 +107,7 @@ Result<ValidateReport> run(const Args& args, Session& session) {
     const ByteView proof_bytes = proof->has_value() ? as_bytes(**proof) : ByteView();
     auto pool = WorkerPool::start(workers);
     KILN_TRY(pool);
-    return validate((*table)->bytes(), proof_bytes, options, **pool, session.context->store, *session.tools, terminal_progress());
+    return validate((*table)->bytes(), proof_bytes, options, **pool, session.context->store, *session.tools, console_progress());
 }
 
 int run_validate(const Args& args) {
