@@ -125,7 +125,8 @@ std::string help_of(const std::vector<Verb>& verbs) {
             out +=
                 std::string("  ") + verb.name + std::string(width - std::string(verb.name).size() + 2, ' ') + verb.summary + "\n";
     out +=
-        "\nkiln VERB --help shows a verb's options and an example; kiln --version the version.\n"
+        "\nkiln VERB --help shows a verb's options and an example; kiln help environment the\n"
+        "variables that it reads; kiln --version the version.\n"
         "exit codes: 0 ok, 1 the input is wrong, 2 usage, 3 the environment failed, 4 a check found a mismatch\n"
         "\nexample:\n  kiln count manifests/surface.yaml\n";
     return out;

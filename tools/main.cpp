@@ -10,6 +10,7 @@
 #include "compiler/base/jobs.h"
 #include "compiler/pass.h"
 #include "tools/console.h"
+#include "tools/environment.h"
 #include "tools/verbs.h"
 
 namespace {
@@ -51,6 +52,7 @@ int dispatch(const std::vector<kiln::Verb>& verbs, const std::vector<std::string
     if (words[0] == "--help" || words[0] == "-h" || words[0] == "help") {
         for (const Verb& verb : verbs)
             if (words.size() > 1 && words[1] == verb.name) return finish(help_of(verb));
+        if (words.size() > 1 && words[1] == "environment") return finish(help_of_environment());
         if (words.size() == 1 || words[0] != "help") return finish(help_of(verbs));
         return no_verb(verbs, words[1]);
     }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs every Debian 12 package that building, testing and demonstrating kiln needs, and the BC encoder of compiler/bake
 # from the npm registry. Idempotent; works as root or with sudo.
-# With --bench it adds the tools that bench_peers.sh measures against.
+# With --bench it adds the tools that bench/peers.sh measures against.
 set -euo pipefail
 
 packages=(
