@@ -89,7 +89,7 @@ std::vector<Cell> bake_cube(int what, int sampling, const std::shared_ptr<ImageD
                    {"target", target_of(side, side, 6), {}}};
     data.push_constants = bytes_of(std::vector<Push>{push});
     data.groups = {1, 1, 6};
-    const ComputeResult result = run_text(text_of("uber/bake.comp", axes(what, sampling, 0)), data);
+    const ComputeResult result = run_text(uber_text("bake.comp", axes(what, sampling, 0)), data);
     const ReadBack* picture = result.image("target");
     std::vector<Cell> out;
     if (picture == nullptr || picture->words.size() != size_t{6} * side * side * picture->components) {
@@ -184,7 +184,7 @@ TEST(Bake, SplitSumTables) {
         data.images = {{"table", target_of(32, 32, 1), {}}};
         data.push_constants = bytes_of(std::vector<Push>{{0, 4096, 0, 0}});
         data.groups = {4, 4, 1};
-        const ComputeResult result = run_text(text_of("uber/bake.comp", axes(2, 0, form.axis)), data);
+        const ComputeResult result = run_text(uber_text("bake.comp", axes(2, 0, form.axis)), data);
         const ReadBack* table = result.image("table");
         ASSERT_NE(table, nullptr);
         double worst_a = 0, worst_b = 0, edge_a = 0;
@@ -212,7 +212,7 @@ TEST(Bake, LectureTableIsTooBright) {
         ComputeData data;
         data.images = {{"table", target_of(3, 3, 1), {}}};
         data.push_constants = bytes_of(std::vector<Push>{{0, 65536, 0, 0}});
-        const ComputeResult result = run_text(text_of("uber/bake.comp", axes(2, 0, smith)), data);
+        const ComputeResult result = run_text(uber_text("bake.comp", axes(2, 0, smith)), data);
         const ReadBack* table = result.image("table");
         ASSERT_NE(table, nullptr);
         const uint32_t* w = &table->words[4 * table->components];
@@ -230,7 +230,7 @@ std::vector<float> bake_numbers(int what, size_t vectors, const std::string& nam
     if (what == 6) data.images.push_back({"target", target_of(map->width, map->width, 6), {}});
     data.push_constants = bytes_of(std::vector<Push>{push});
     data.groups = {groups, 1, 1};
-    const ComputeResult result = run_text(text_of("uber/bake.comp", axes(what, 0, 0)), data);
+    const ComputeResult result = run_text(uber_text("bake.comp", axes(what, 0, 0)), data);
     std::vector<float> numbers = values_of<float>(result.buffer("Result"));
     numbers.resize(vectors * 4);
     if (what == 6) {

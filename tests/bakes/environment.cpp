@@ -20,7 +20,7 @@ using Four = std::array<float, 4>;
 std::vector<Four> look(const std::vector<std::string>& files, const std::string& type, const std::string& expression,
                        const std::vector<Four>& at, const std::shared_ptr<ImageData>& image, SamplerState sampler) {
     std::string text = "#version 450\n";
-    for (const std::string& file : files) text += text_of("uber/lib/" + file);
+    for (const std::string& file : files) text += uber_text("lib/" + file);
     text +=
         "layout(local_size_x = 64) in;\nlayout(set = 0, binding = 0) uniform " + type +
         " t;\nlayout(set = 0, binding = 1) readonly buffer In { vec4 at[]; };\n"

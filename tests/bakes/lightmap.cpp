@@ -98,7 +98,7 @@ std::shared_ptr<ImageData> srgb8(const FloatImage& image, float range) {
 // E of every texel and normal as the device has it. images: 4 for SH, 1 for flat.
 std::vector<V> shade(const std::vector<std::shared_ptr<ImageData>>& images, bool ratios, float range) {
     const bool flat = images.size() == 1;
-    std::string text = "#version 450\n" + text_of("uber/lib/sh_lightmap.glsl") + text_of("uber/lib/sh.glsl") +
+    std::string text = "#version 450\n" + uber_text("lib/sh_lightmap.glsl") + uber_text("lib/sh.glsl") +
                        "layout(local_size_x = 64) in;\nlayout(push_constant) uniform P { float range; };\n"
                        "layout(set = 0, binding = 0) readonly buffer Normals { vec4 normals[]; };\n"
                        "layout(set = 0, binding = 1) buffer Out { vec4 e[]; };\n";

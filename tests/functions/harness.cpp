@@ -2,9 +2,9 @@
 
 #include <cstdio>
 
-#include "compiler/base/files.h"
 #include "compiler/device/compute.h"
 #include "tests/device/glsl.h"
+#include "tests/device/uber_text.h"
 #include "tests/functions/costs.h"
 #include "tests/functions/samples.h"
 #include "tests/functions/verdict.h"
@@ -15,27 +15,6 @@ namespace {
 
 constexpr uint32_t group_size = 64;
 constexpr uint32_t least_samples = 10000;
-
-// A file of uber/lib with its includes in place; the files guard themselves.
-std::string library_text(const std::string& file) {
-    const std::string path = std::string(KILN_SOURCE_DIR) + "/uber/lib/" + file;
-    Result<std::optional<std::string>> read = DiskFiles().read(path);
-    if (!read.ok() || !*read) {
-        ADD_FAILURE() << "cannot read " << path;
-        return "";
-    }
-    const std::string& text = **read;
-    std::string out;
-    for (size_t at = 0; at < text.size();) {
-        const size_t end = std::min(text.find('\n', at), text.size());
-        const std::string line = text.substr(at, end - at);
-        const size_t open = line.find('"'), close = line.rfind('"');
-        out += line.rfind("#include", 0) == 0 && close > open ? library_text(line.substr(open + 1, close - open - 1)) : line;
-        out += "\n";
-        at = end + 1;
-    }
-    return out;
-}
 
 void print(const Figures& f, const std::string& file) {
     const auto count = [](uint64_t n) { return static_cast<unsigned long long>(n); };
@@ -59,7 +38,7 @@ void Functions::texture(const std::string& declaration, std::shared_ptr<const Im
 
 std::string Functions::prelude() const {
     std::string out = "#version 450\n";
-    for (const std::string& file : files_) out += library_text(file);
+    for (const std::string& file : files_) out += uber_text("lib/" + file);
     return out + textures_ + declared_;
 }
 

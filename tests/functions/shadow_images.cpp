@@ -1,33 +1,6 @@
 #include "tests/functions/shadow_images.h"
 
-#include <filesystem>
-
-#include "compiler/base/files.h"
-
 namespace kiln::test {
-
-std::string uber_text(const std::string& path, const std::string& defines) {
-    const std::filesystem::path file = std::filesystem::path(KILN_SOURCE_DIR) / "uber" / path;
-    Result<std::optional<std::string>> read = DiskFiles().read(file.string());
-    if (!read.ok() || !*read) {
-        ADD_FAILURE() << "cannot read " << path;
-        return "";
-    }
-    const std::string& text = **read;
-    std::string out;
-    for (size_t at = 0; at < text.size();) {
-        const size_t end = std::min(text.find('\n', at), text.size());
-        const std::string line = text.substr(at, end - at);
-        const size_t open = line.find('"'), close = line.rfind('"');
-        const bool include = line.rfind("#include", 0) == 0 && close > open;
-        const std::filesystem::path here = std::filesystem::path(path).parent_path();
-        out += include ? uber_text((here / line.substr(open + 1, close - open - 1)).string()) : line;
-        out += "\n";
-        if (line.rfind("#version", 0) == 0) out += defines;
-        at = end + 1;
-    }
-    return out;
-}
 
 std::vector<Texel> evaluate(const std::string& text, const std::string& expression, const std::vector<Texel>& at,
                             const std::vector<Sampled>& textures) {

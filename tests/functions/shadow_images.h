@@ -2,12 +2,10 @@
 // Expressions over several textures, evaluated on the device at given points.
 
 #include "tests/device/fetch.h"
+#include "tests/device/uber_text.h"
 #include "tests/functions/shadow_maps.h"
 
 namespace kiln::test {
-
-// A file below uber/ with its includes in place and `defines` after its #version, if it has one.
-std::string uber_text(const std::string& path, const std::string& defines = "");
 
 struct Sampled {
     std::string declaration;  // "sampler2DShadow map"

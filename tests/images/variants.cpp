@@ -7,6 +7,7 @@
 #include "compiler/toolchain/spirv.h"
 #include "compiler/validate/validate_tasks.h"
 #include "tests/device/glsl.h"
+#include "tests/device/uber_text.h"
 #include "uber/reference/random.h"
 
 namespace kiln::test {
@@ -14,27 +15,6 @@ namespace kiln::test {
 using namespace reference;
 
 namespace {
-
-std::string text_of(const std::string& path, const std::string& defines) {
-    DiskFiles files;
-    const Result<std::optional<std::string>> read = files.read(std::string(KILN_SOURCE_DIR) + "/" + path);
-    EXPECT_TRUE(read.ok() && *read) << path;
-    std::string out;
-    if (!read.ok() || !*read) return out;
-    for (size_t at = 0; at < (*read)->size();) {
-        const size_t end = std::min((*read)->find('\n', at), (*read)->size());
-        const std::string line = (*read)->substr(at, end - at);
-        at = end + 1;
-        if (line.rfind("#include", 0) == 0) {
-            const size_t open = line.find('"') + 1;
-            out += text_of(join_path(folder_of(path), line.substr(open, line.rfind('"') - open)), "");
-        } else {
-            out += line + "\n";
-        }
-        if (line.rfind("#version", 0) == 0) out += defines;
-    }
-    return out;
-}
 
 // As the pass makes it: pruned and optimised.
 StageCode shipped(Stage stage, const std::string& text) {
@@ -142,7 +122,7 @@ Variant variant_of(const std::string& manifest, const std::string& shader, const
         out.name += (out.name.empty() ? "" : " ") + axis.name + "=" + value->name;
     }
     for (const StageFile& file : from->stages) {
-        std::string text = text_of("uber/" + file.file, defines);
+        std::string text = uber_text(file.file, defines);
         for (const auto& [what, by] : edits) {
             if (file.stage != Stage::fragment) continue;
             size_t at = text.find(what);
