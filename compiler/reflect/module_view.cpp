@@ -60,6 +60,9 @@ void apply(Decorations& marks, uint32_t decoration, uint32_t value) {
         case dec_patch:
             marks.patch = true;
             break;
+        case dec_per_vertex:
+            marks.per_vertex = true;
+            break;
         case dec_centroid:
             marks.centroid = true;
             break;

@@ -61,7 +61,7 @@ struct Decorations {
     uint32_t location = none, component = none, index = none, binding = none, set = none, offset = none, builtin = none;
     uint32_t array_stride = none, matrix_stride = none, input_attachment = none, spec_id = none;
     bool block = false, buffer_block = false, row_major = false, flat = false, no_perspective = false, centroid = false,
-         sample = false, patch = false, non_writable = false, non_readable = false, relaxed = false;
+         sample = false, patch = false, per_vertex = false, non_writable = false, non_readable = false, relaxed = false;
 };
 
 struct Constant {

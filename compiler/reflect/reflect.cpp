@@ -357,6 +357,7 @@ private:
     // True where SPIR-V puts an array of vertices around the variable.
     bool per_vertex(const ir::Variable& variable) const {
         if (v_.marks(variable.id).patch) return false;
+        if (v_.marks(variable.id).per_vertex) return true;
         if (variable.storage == ir::sc_input)
             return out_.stage == Stage::tess_control || out_.stage == Stage::tess_evaluation || out_.stage == Stage::geometry;
         return out_.stage == Stage::tess_control || out_.stage == Stage::mesh;

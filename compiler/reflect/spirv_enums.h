@@ -114,6 +114,7 @@ enum Decoration : uint32_t {
     dec_descriptor_set = 34,
     dec_offset = 35,
     dec_input_attachment_index = 43,
+    dec_per_vertex = 5285,
 };
 
 enum StorageClass : uint32_t {

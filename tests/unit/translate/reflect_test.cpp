@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "compiler/interfaces/mismatch.h"
 #include "tests/unit/translate/mini_build.h"
 
 namespace kiln {
@@ -190,6 +191,17 @@ layout(location=0) in vec4 a[]; layout(location=0) out vec4 b;
 void main() { for (int i = 0; i < 3; ++i) { b = a[i]; gl_Position = gl_in[i].gl_Position; EmitVertex(); } })");
     ASSERT_EQ(r.inputs.size(), 1U);
     EXPECT_TRUE(r.inputs[0].type.array.empty());
+}
+
+TEST(Reflect, PerVertexInputsOfAFragmentStageTakeOneLocation) {
+    const Reflection r = reflection_of(Stage::fragment, R"(
+#extension GL_EXT_fragment_shader_barycentric : require
+layout(location=0) pervertexEXT in vec2 a[3]; layout(location=1) pervertexEXT in vec2 b[3];
+layout(location=0) out vec4 o;
+void main() { o = vec4(a[0] * gl_BaryCoordEXT.x + a[1] * gl_BaryCoordEXT.y, b[2]); })");
+    ASSERT_EQ(r.inputs.size(), 2U);
+    EXPECT_TRUE(r.inputs[0].type.array.empty());
+    EXPECT_TRUE(overlapping_varyings(r).empty());
 }
 
 TEST(Reflect, RefusesWhatCannotBeWalked) {
