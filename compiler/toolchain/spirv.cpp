@@ -87,6 +87,15 @@ void register_lean(spvtools::Optimizer& o) {
         .RegisterPass(CreateCompactIdsPass());
 }
 
+// SPIRV-Tools folds instructions on cooperative matrices as if they were vectors, and crashes.
+bool has_cooperative_matrices(WordView words) {
+    constexpr uint32_t op_capability = 17, op_ext_inst_import = 11, nv = 5357, khr = 6022;
+    for (size_t at = 5; at + 1 < words.size() && words[at] >> 16 != 0 && (words[at] & 0xFFFF) != op_ext_inst_import;
+         at += words[at] >> 16)
+        if ((words[at] & 0xFFFF) == op_capability && (words[at + 1] == nv || words[at + 1] == khr)) return true;
+    return false;
+}
+
 bool is_id(spv_operand_type_t type) {
     switch (type) {
         case SPV_OPERAND_TYPE_ID:
@@ -178,6 +187,7 @@ Result<Words> spirv_prune(WordView words, const Options& options) {
 }
 
 Result<Words> spirv_optimise(WordView words, const Options& options) {
+    if (has_cooperative_matrices(words)) return Words(words.begin(), words.end());
     switch (options.optimise) {
         case Optimise::none:
             return Words(words.begin(), words.end());

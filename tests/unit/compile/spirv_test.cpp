@@ -133,6 +133,33 @@ void main() { if (uv.x < 0.0) discard; colour = scene.tint * f(int(uv.y)) * f(2)
     EXPECT_EQ(pruned.size(), none);
 }
 
+TEST(Optimise, CooperativeMatricesAreLeftAsTheyAre) {
+    Options options;
+    options.vulkan = 0x103;
+    options.spirv = 0x106;
+    const Result<Words> pruned = spirv_prune(compiled(Stage::compute, R"(#version 450
+#extension GL_KHR_memory_scope_semantics : require
+#extension GL_NV_cooperative_matrix : require
+layout(set = 0, binding = 0) buffer Data { float x[64]; } data;
+void main() {
+    fcoopmatNV<32, gl_ScopeSubgroup, 8, 8> m = fcoopmatNV<32, gl_ScopeSubgroup, 8, 8>(1.0);
+    m = m + m;
+    coopMatStoreNV(m, data.x, 0, 8, false);
+    data.x[0] = m[1];
+}
+)",
+                                                      options),
+                                             options);
+    ASSERT_TRUE(pruned.ok());
+    for (const Optimise level : {Optimise::performance, Optimise::size}) {
+        options.optimise = level;
+        const Result<Words> out = spirv_optimise(*pruned, options);
+        ASSERT_TRUE(out.ok());
+        EXPECT_EQ(*out, *pruned);
+        EXPECT_TRUE(spirv_validate(*out, options).empty());
+    }
+}
+
 TEST(Validate, ScalarLayoutOnlyWhereTheSourceAskedForIt) {
     const std::string rest = R"(
 layout(binding = 0, SCALAR) uniform U { float a; vec3 b; } u;
