@@ -90,8 +90,17 @@ private:
                 diag.notes.push_back(resource_words(*side.form->resource) + " " + condition(side.set));
         };
         const auto kinds = sides_by([](const Resource& r) { return std::to_string(static_cast<int>(r.kind)); });
-        if (kinds.size() > 1)
-            return report(kinds, Severity::error, "one layout cannot hold both kinds; give them bindings of their own");
+        if (kinds.size() > 1) {
+            Set seen = Diagram::none();
+            bool together = false;
+            for (const auto& [kind, side] : kinds) {
+                together |= !d_.disjoint(seen, side.set);
+                seen = d_.either(seen, side.set);
+            }
+            return together ? report(kinds, Severity::error, "one layout cannot hold both kinds; give them bindings of their own")
+                            : report(kinds, Severity::warning,
+                                     "the kind differs, so one descriptor set layout does not serve all variants");
+        }
         const auto shapes = sides_by([](const Resource& r) { return shape(r); });
         if (shapes.size() > 1)
             return report(shapes, Severity::warning, "the kind of image differs, so one descriptor does not serve all variants");
