@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cerrno>
 
-
 namespace kiln {
 
 namespace {
@@ -83,15 +82,20 @@ void BlobReader::trust(const Digest& key, const Identity& identity, int64_t now)
     known = {identity, now, nullptr};
 }
 
-// When a shard is full all of its bytes go: those that are read often are back at once.
+// When a shard is full, others' bytes go in the order of the table, which is by digest and so without regard to use. Blobs that
+// are read in turn and do not all fit would each be gone before their next turn if the oldest went first.
 void BlobReader::keep(const Digest& key, const std::shared_ptr<const Bytes>& bytes) {
     Shard& shard = shard_of(key);
     const std::lock_guard lock(shard.mutex);
     const auto found = shard.known.find(key);
     if (found == shard.known.end() || found->second.bytes) return;
-    if (shard.kept + bytes->size() > most_kept / shards) {
-        for (auto& [name, known] : shard.known) known.bytes = nullptr;
-        shard.kept = 0;
+    const size_t buckets = shard.known.bucket_count();
+    for (size_t seen = 0; shard.kept + bytes->size() > most_kept / shards && seen < buckets; ++seen) {
+        shard.hand = (shard.hand + 1) % buckets;
+        for (auto entry = shard.known.begin(shard.hand); entry != shard.known.end(shard.hand); ++entry) {
+            if (entry->second.bytes) shard.kept -= entry->second.bytes->size();
+            entry->second.bytes = nullptr;
+        }
     }
     found->second.bytes = bytes;
     shard.kept += bytes->size();

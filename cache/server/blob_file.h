@@ -18,6 +18,8 @@ public:
     Status read(uint64_t offset, std::span<uint8_t> out) const;
     // The bytes where they are in memory already; empty for a blob that is read from its file.
     ByteView memory() const { return memory_ ? ByteView(*memory_) : ByteView(); }
+    // The same, for whoever keeps them longer than this object; null where memory() is empty.
+    const std::shared_ptr<const Bytes>& shared_memory() const { return memory_; }
     // The open file of one that is not in memory, for sendfile(2); -1.
     int descriptor() const { return fd_ ? fd_->get() : -1; }
     // The whole of it.
@@ -68,6 +70,7 @@ private:
     struct Shard {
         mutable std::mutex mutex;
         uint64_t kept = 0;
+        size_t hand = 0;  // the bucket whose bytes went last
         std::unordered_map<Digest, Verified> known;
     };
     static Identity identity_of(const struct stat& info);

@@ -3,7 +3,7 @@
 #include <deque>
 #include <set>
 
-#include "cache/server/grpc_call.h"
+#include "cache/server/grpc_batch_read.h"
 #include "cache/zstd.h"
 
 namespace kiln {
@@ -160,7 +160,8 @@ private:
     reapi::GetTreeResponse page_;
 };
 
-class BlobCalls final : public reapi::ContentAddressableStorage::CallbackService {
+class BlobCalls final : public reapi::ContentAddressableStorage::WithRawCallbackMethod_BatchReadBlobs<
+                            reapi::ContentAddressableStorage::CallbackService> {
 public:
     explicit BlobCalls(CallContext& context) : shared_(context) {}
 
@@ -200,28 +201,11 @@ public:
         });
     }
 
-    grpc::ServerUnaryReactor* BatchReadBlobs(grpc::CallbackServerContext* context, const reapi::BatchReadBlobsRequest* request,
-                                             reapi::BatchReadBlobsResponse* out) override {
+    grpc::ServerUnaryReactor* BatchReadBlobs(grpc::CallbackServerContext* context, const grpc::ByteBuffer* request,
+                                             grpc::ByteBuffer* out) override {
         return answer(context, [&] {
-            if (grpc::Status s = check_function(request->digest_function()); !s.ok()) return s;
-            const Caller caller = shared_.caller(*context);
-            const auto instance = shared_.service.enter(caller, request->instance_name(), Role::read);
-            if (!instance.ok()) return status_of(instance.refused());
-            uint64_t total = 0;
-            for (const reapi::Digest& digest : request->digests()) {
-                const auto name = name_of(digest);
-                if (!name) return invalid("a digest is none");
-                total += name->size;
-                if (name->size > static_cast<uint64_t>(grpc_most_batch) || total > static_cast<uint64_t>(grpc_most_batch))
-                    return invalid("the batch is larger than max_batch_total_size_bytes");
-            }
-            for (const reapi::Digest& digest : request->digests()) {
-                auto& said = *out->add_responses();
-                *said.mutable_digest() = digest;
-                const grpc::Status status = read(caller, request->instance_name(), *name_of(digest), *said.mutable_data());
-                set_status(said.mutable_status(), status);
-            }
-            return grpc::Status::OK;
+            grpc::ByteBuffer own(*request);
+            return batch_read(shared_, shared_.caller(*context), own, *out);
         });
     }
 
@@ -247,22 +231,6 @@ private:
             return invalid("the bytes are no zstd of that size");
         const auto put = shared_.service.put_blob(caller, instance, *name, plain);
         return put.ok() ? grpc::Status::OK : status_of(put.refused());
-    }
-
-    grpc::Status read(const Caller& caller, const std::string& instance, const BlobName& name, std::string& out) {
-        auto file = shared_.service.blob(caller, instance, name.digest);
-        if (!file.ok()) return status_of(file.refused());
-        if (!file->has_value() || (*file)->size() != name.size) return {grpc::StatusCode::NOT_FOUND, "not in the cache"};
-        if (const ByteView kept = (*file)->memory(); !kept.empty()) {
-            out.assign(as_text(kept));
-            return grpc::Status::OK;
-        }
-        out.resize(name.size);
-        if (!(*file)->read(0, {reinterpret_cast<uint8_t*>(out.data()), out.size()}).ok()) {
-            out.clear();
-            return {grpc::StatusCode::INTERNAL, "the cache's disk failed"};
-        }
-        return grpc::Status::OK;
     }
 
     CallContext& shared_;

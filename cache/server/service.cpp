@@ -73,17 +73,38 @@ Answer<Instance> Service::enter(const Caller& caller, std::string_view name, Rol
     return refuse(in, caller, Refusal::forbidden, "the token's roles do not allow this");
 }
 
-Answer<std::optional<BlobFile>> Service::blob(const Caller& caller, std::string_view name, const Digest& key, bool* slow) {
+Service::BlobReads::BlobReads(Service& service, const Caller& caller, Instance instance)
+    : service_(&service), caller_(&caller), instance_(std::move(instance)) {}
+
+Service::BlobReads::BlobReads(BlobReads&& other) noexcept
+    : service_(std::exchange(other.service_, nullptr)),
+      caller_(other.caller_),
+      instance_(std::move(other.instance_)),
+      counts_(other.counts_) {}
+
+Service::BlobReads::~BlobReads() {
+    if (service_ != nullptr && counts_.blob_hits + counts_.blob_misses != 0) service_->counters_.add(instance_.name, counts_);
+}
+
+Answer<std::optional<BlobFile>> Service::BlobReads::open(const Digest& key, bool* slow) {
+    auto file = service_->reader_of_blobs_.open(key, slow);
+    if (!file.ok()) return service_->failure(instance_, *caller_, file.error());
+    if (slow != nullptr && *slow) return std::optional<BlobFile>();
+    ++(file->has_value() ? counts_.blob_hits : counts_.blob_misses);
+    if (file->has_value()) counts_.blob_bytes_out += (*file)->size();
+    return std::move(*file);
+}
+
+Answer<Service::BlobReads> Service::reads(const Caller& caller, std::string_view name) {
     auto instance = enter(caller, name, Role::read);
     if (!instance.ok()) return instance.refused();
-    auto file = reader_of_blobs_.open(key, slow);
-    if (!file.ok()) return failure(*instance, caller, file.error());
-    if (slow != nullptr && *slow) return std::optional<BlobFile>();
-    Counts counts;
-    (file->has_value() ? counts.blob_hits : counts.blob_misses) = 1;
-    if (file->has_value()) counts.blob_bytes_out = (*file)->size();
-    counters_.add(instance->name, counts);
-    return std::move(*file);
+    return BlobReads(*this, caller, std::move(*instance));
+}
+
+Answer<std::optional<BlobFile>> Service::blob(const Caller& caller, std::string_view name, const Digest& key, bool* slow) {
+    auto some = reads(caller, name);
+    if (!some.ok()) return some.refused();
+    return some->open(key, slow);
 }
 
 Answer<bool> Service::has_blob(const Caller& caller, std::string_view name, const BlobName& blob) {

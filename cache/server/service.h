@@ -69,6 +69,24 @@ public:
     // nullopt: absent. With `slow`: sets it, answers nullopt and counts nothing where a large file must be hashed first.
     Answer<std::optional<BlobFile>> blob(const Caller& caller, std::string_view instance, const Digest& key,
                                          bool* slow = nullptr);
+    // Reads of many blobs by one caller: checked once, counted once, when this object ends.
+    class BlobReads {
+    public:
+        BlobReads(BlobReads&& other) noexcept;
+        ~BlobReads();
+        // As blob().
+        Answer<std::optional<BlobFile>> open(const Digest& key, bool* slow = nullptr);
+
+    private:
+        friend class Service;
+        BlobReads(Service& service, const Caller& caller, Instance instance);
+        Service* service_;
+        const Caller* caller_;
+        Instance instance_;
+        Counts counts_;
+    };
+    // `caller` outlives it.
+    Answer<BlobReads> reads(const Caller& caller, std::string_view instance);
     Answer<bool> has_blob(const Caller& caller, std::string_view instance, const BlobName& blob);
     // `size`: what the client says it is, checked against the bytes.
     Answer<Written> put_blob(const Caller& caller, std::string_view instance, const BlobName& blob, ByteView bytes);

@@ -1,5 +1,6 @@
 // Blobs a second through BatchReadBlobs, from one server of the Remote Execution API: batch_read_bench fill|read HOST:PORT SIZE
-// BATCH CALLERS SECONDS. `fill` uploads what `read` asks for. Every blob that comes back is compared with what was sent.
+// BATCH CONNECTIONS SECONDS. `fill` uploads what `read` asks for. A connection has one caller, who asks when he has been
+// answered. Every blob that comes back is compared with what was sent.
 
 #include <grpcpp/grpcpp.h>
 #include <remote_execution.grpc.pb.h>
@@ -40,10 +41,10 @@ int fail(const grpc::Status& status) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 7) return std::fputs("usage: batch_read_bench fill|read HOST:PORT SIZE BATCH CALLERS SECONDS\n", stderr), 2;
+    if (argc != 7) return std::fputs("usage: batch_read_bench fill|read HOST:PORT SIZE BATCH CONNECTIONS SECONDS\n", stderr), 2;
     const bool fill = std::string(argv[1]) == "fill";
     const size_t size = std::strtoul(argv[3], nullptr, 10), batch = std::strtoul(argv[4], nullptr, 10);
-    const size_t callers = std::strtoul(argv[5], nullptr, 10);
+    const size_t connections = std::strtoul(argv[5], nullptr, 10);
     const double seconds = std::strtod(argv[6], nullptr);
     std::vector<std::string> texts;
     std::vector<reapi::Digest> names;
@@ -53,9 +54,14 @@ int main(int argc, char** argv) {
         names.back().set_hash(kiln::sha256(kiln::as_bytes(texts.back())).hex());
         names.back().set_size_bytes(static_cast<int64_t>(size));
     }
-    const auto channel = grpc::CreateChannel(argv[2], grpc::InsecureChannelCredentials());
+    const auto connect = [&] {
+        grpc::ChannelArguments own;
+        own.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+        return reapi::ContentAddressableStorage::NewStub(
+            grpc::CreateCustomChannel(argv[2], grpc::InsecureChannelCredentials(), own));
+    };
     if (fill) {
-        const auto stub = reapi::ContentAddressableStorage::NewStub(channel);
+        const auto stub = connect();
         for (size_t at = 0; at < blobs;) {
             reapi::BatchUpdateBlobsRequest request;
             for (size_t bytes = 0; at < blobs && bytes + size < 3'000'000; bytes += size + 100, ++at) {
@@ -76,7 +82,7 @@ int main(int argc, char** argv) {
     const auto start = Clock::now(),
                end = start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
     const auto work = [&](size_t caller) {
-        const auto stub = reapi::ContentAddressableStorage::NewStub(channel);
+        const auto stub = connect();
         for (size_t at = caller * 37; Clock::now() < end; at += batch) {
             reapi::BatchReadBlobsRequest request;
             for (size_t i = 0; i < batch; ++i) *request.add_digests() = names[(at + i) % blobs];
@@ -97,7 +103,7 @@ int main(int argc, char** argv) {
         }
     };
     std::vector<std::thread> threads;
-    for (size_t i = 0; i < callers; ++i) threads.emplace_back(work, i);
+    for (size_t i = 0; i < connections; ++i) threads.emplace_back(work, i);
     for (std::thread& t : threads) t.join();
     const double took = std::chrono::duration<double>(Clock::now() - start).count();
     std::printf("%.0f\n", static_cast<double>(done) / took);

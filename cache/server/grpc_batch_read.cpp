@@ -1,0 +1,125 @@
+// Field numbers are those of BatchReadBlobsResponse, google.rpc.Status and Digest in cache/protocol/proto/.
+#include "cache/server/grpc_batch_read.h"
+
+#include "cache/protocol/wire_message.h"
+
+namespace kiln {
+
+namespace {
+
+constexpr size_t worth_a_piece = 4096;  // below, a copy costs less than another piece in the socket's list
+
+// A message in the making: text that is written here, and pieces of others' memory between.
+class Pieces {
+public:
+    std::string& text() { return text_; }
+    void add(grpc::Slice piece) { between_.emplace_back(text_.size(), std::move(piece)); }
+    grpc::ByteBuffer take() const {
+        const grpc::Slice all(text_);
+        std::vector<grpc::Slice> pieces;
+        pieces.reserve(2 * between_.size() + 1);
+        size_t from = 0;
+        for (const auto& [at, piece] : between_) {
+            pieces.push_back(all.sub(from, at));
+            pieces.push_back(piece);
+            from = at;
+        }
+        pieces.push_back(all.sub(from, text_.size()));
+        return {pieces.data(), pieces.size()};
+    }
+
+private:
+    std::string text_;
+    std::vector<std::pair<size_t, grpc::Slice>> between_;
+};
+
+void put_varint(std::string& out, uint64_t value) {
+    for (; value >= 0x80; value >>= 7) out.push_back(static_cast<char>(value | 0x80));
+    out.push_back(static_cast<char>(value));
+}
+
+size_t varint_size(uint64_t value) {
+    size_t size = 1;
+    for (; value >= 0x80; value >>= 7) ++size;
+    return size;
+}
+
+void put_field(std::string& out, uint32_t number, uint64_t size) {
+    out.push_back(static_cast<char>(number << 3 | 2));
+    put_varint(out, size);
+}
+
+grpc::Slice piece_of(std::shared_ptr<const Bytes> bytes) {
+    using Holder = std::shared_ptr<const Bytes>;
+    auto* const holder = new Holder(std::move(bytes));
+    return {const_cast<uint8_t*>((*holder)->data()), (*holder)->size(), [](void* held) { delete static_cast<Holder*>(held); },
+            holder};
+}
+
+// Everything of one response but the bytes of its data, which stand last.
+void put_head(std::string& out, const reapi::Digest& digest, const grpc::Status& status, uint64_t data) {
+    WireWriter code;
+    if (!status.ok()) {
+        code.number(1, static_cast<uint64_t>(status.error_code()));
+        code.bytes(2, as_bytes(status.error_message()));
+    }
+    const Bytes said = code.take();
+    const uint64_t named = digest.ByteSizeLong();
+    const uint64_t size = 1 + varint_size(named) + named + 1 + varint_size(said.size()) + said.size() +
+                          (data == 0 ? 0 : 1 + varint_size(data) + data);
+    put_field(out, 1, size);
+    put_field(out, 1, named);
+    digest.AppendToString(&out);
+    put_field(out, 3, said.size());
+    out += as_text(said);
+    if (data != 0) put_field(out, 2, data);
+}
+
+void put_blob(Pieces& out, const reapi::Digest& digest, const BlobName& name, Answer<std::optional<BlobFile>> found) {
+    const auto failed = [&](const grpc::Status& status) { put_head(out.text(), digest, status, 0); };
+    if (!found.ok()) return failed(status_of(found.refused()));
+    if (!found->has_value() || (*found)->size() != name.size) return failed({grpc::StatusCode::NOT_FOUND, "not in the cache"});
+    const BlobFile& file = **found;
+    if (file.shared_memory() || name.size == 0) {
+        put_head(out.text(), digest, grpc::Status::OK, name.size);
+        if (name.size < worth_a_piece)
+            out.text() += as_text(file.memory());
+        else
+            out.add(piece_of(file.shared_memory()));
+        return;
+    }
+    grpc::Slice bytes(static_cast<size_t>(name.size));
+    if (!file.read(0, {const_cast<uint8_t*>(bytes.begin()), bytes.size()}).ok())
+        return failed({grpc::StatusCode::INTERNAL, "the cache's disk failed"});
+    put_head(out.text(), digest, grpc::Status::OK, name.size);
+    out.add(std::move(bytes));
+}
+
+}  // namespace
+
+grpc::Status batch_read(CallContext& shared, const Caller& caller, grpc::ByteBuffer& request, grpc::ByteBuffer& response) {
+    reapi::BatchReadBlobsRequest asked;
+    if (grpc::Status s = grpc::SerializationTraits<reapi::BatchReadBlobsRequest>::Deserialize(&request, &asked); !s.ok())
+        return invalid("no BatchReadBlobsRequest");
+    if (grpc::Status s = check_function(asked.digest_function()); !s.ok()) return s;
+    auto reads = shared.service.reads(caller, asked.instance_name());
+    if (!reads.ok()) return status_of(reads.refused());
+    constexpr auto most = static_cast<uint64_t>(grpc_most_batch);
+    std::vector<BlobName> names;
+    names.reserve(static_cast<size_t>(asked.digests_size()));
+    uint64_t total = 0;
+    for (const reapi::Digest& digest : asked.digests()) {
+        const auto name = name_of(digest);
+        if (!name) return invalid("a digest is none");
+        if (name->size > most || (total += name->size) > most)
+            return invalid("the batch is larger than max_batch_total_size_bytes");
+        names.push_back(*name);
+    }
+    Pieces out;
+    for (size_t i = 0; i < names.size(); ++i)
+        put_blob(out, asked.digests(static_cast<int>(i)), names[i], reads->open(names[i].digest));
+    response = out.take();
+    return grpc::Status::OK;
+}
+
+}  // namespace kiln
