@@ -18,6 +18,12 @@ TEST(Functions, Lights) {
         "cone_attenuation(cos_angle, cos_inner, cos_outer)",
         [](auto cos_angle, auto cos_inner, auto cos_outer) { return cone_attenuation(cos_angle, cos_inner, cos_outer); },
         number("cos_angle", linear(-1, 1)), number("cos_inner", linear(-1, 1)), number("cos_outer", linear(-1, 1)));
+    lights.test(
+        "point_light_intensity(lumen)", [](auto lumen) { return point_light_intensity(lumen); },
+        number("lumen", logarithmic(1e-3, 1e7).with({0})));
+    lights.test(
+        "spot_light_intensity(lumen)", [](auto lumen) { return spot_light_intensity(lumen); },
+        number("lumen", logarithmic(1e-3, 1e7).with({0})));
     lights.run();
 }
 

@@ -21,4 +21,13 @@ float cone_attenuation(float cos_angle, float cos_inner, float cos_outer) {
     return t * t;
 }
 
+// A lamp's intensity in candela from its luminous flux in lumen (>= 0). A point light sends it all ways: flux / 4 pi. A spot light's is
+// flux / pi whatever its angle, as if a reflector gathered it, so that narrowing a cone does not make it brighter.
+float point_light_intensity(float lumen) {
+    return lumen * (0.25 / pi);
+}
+float spot_light_intensity(float lumen) {
+    return lumen * (1.0 / pi);
+}
+
 #endif

@@ -20,4 +20,14 @@ T cone_attenuation(const T& cos_angle, const T& cos_inner, const T& cos_outer) {
     return t * t;
 }
 
+// Candela from lumen: a point light's flux / 4 pi, a spot light's flux / pi whatever its angle.
+template <class T>
+T point_light_intensity(const T& lumen) {
+    return lumen * T(0.25 / pi);
+}
+template <class T>
+T spot_light_intensity(const T& lumen) {
+    return lumen * T(1.0 / pi);
+}
+
 }  // namespace kiln::reference

@@ -1,4 +1,5 @@
 // Lightmaps: the first harmonics band or one colour, in formats from 32 bytes a texel to 2.5, through real textures.
+#include <array>
 #include <mutex>
 
 #include "compiler/bake/bc_encoder.h"
@@ -83,8 +84,8 @@ Vec3d gathered_light(double x, double z, const Vec3d& n) {
 
 // What a renderer would have baked, before any encoding.
 struct Bake {
-    std::vector<Moments> moments[maps];
-    std::vector<Vec3d> flat[maps];  // E with the floor's normal
+    std::array<std::vector<Moments>, maps> moments;
+    std::array<std::vector<Vec3d>, maps> flat;  // E with the floor's normal
 };
 
 Bake make_bake(const Jobs& jobs) {

@@ -23,5 +23,11 @@ TEST(Lights, ConesHaveAnInsideAndAnOutside) {
     EXPECT_EQ(cone_attenuation(0.9, 0.8, 0.8), 1.0);
 }
 
+TEST(Lights, CandelaFromLumen) {
+    EXPECT_NEAR(point_light_intensity(800.0), 63.66197723675814, 1e-12);
+    EXPECT_NEAR(spot_light_intensity(800.0), 254.64790894703253, 1e-12);
+    EXPECT_EQ(spot_light_intensity(0.0), 0.0);
+}
+
 }  // namespace
 }  // namespace kiln::reference
