@@ -131,6 +131,9 @@ Status publish(Files& files, const Args& args, const Build& build, const std::st
 
 int run_build(const Args& args) {
     const bool plans = args.has("--distributed-plan");
+    for (const auto& [option, of] : {std::pair("--workers", "--distributed-plan"), std::pair("--execute-timeout", "--execute")})
+        if (args.has(option) && !args.has(of))
+            return print_error({Fault::usage, std::string("kiln build: ") + option + " is of use with " + of + " alone"});
     if (!args.has("--output") && !plans) return print_error({Fault::usage, "kiln build: where to? give -o TABLE.kiln"});
     const auto options = build_options(args);
     if (!options.ok()) return print_error(options.error());
@@ -160,8 +163,8 @@ int run_build(const Args& args) {
         if (const Status status = (*session)->files.write(args.value("--report-json"), as_bytes(report)); !status.ok())
             return print_error(status.error());
     if (args.has("--json")) return finish(report);
-    if (execution != nullptr) return finish(as_text(build, output) + execution_text(*execution));
-    return finish(as_text(build, output) + (remote != nullptr ? remote_text(*remote) : std::string()));
+    return finish(as_text(build, output) + (execution != nullptr ? execution_text(*execution) : std::string()) +
+                  (remote != nullptr ? remote_text(*remote) : std::string()));
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ void Distributor::modules(std::span<const ModuleQuestion> questions) {
         batches.push_back(write_batch(tools_.versions(), part, {}));
         for (asked.emplace_back(); const ModuleQuestion& q : part) asked.back().push_back(q.action);
     }
-    send("compile elsewhere", std::move(batches), asked);
+    send("batches compiled elsewhere", std::move(batches), asked);
 }
 
 void Distributor::artifacts(std::span<const ArtifactQuestion> questions) {
@@ -95,7 +95,7 @@ void Distributor::artifacts(std::span<const ArtifactQuestion> questions) {
         asked.emplace_back();
         for (const ArtifactQuestion& q : part) asked.back().insert(asked.back().end(), q.actions.begin(), q.actions.end());
     }
-    send("translate elsewhere", std::move(batches), asked);
+    send("batches translated elsewhere", std::move(batches), asked);
 }
 
 void Distributor::send(const char* what, std::vector<Bytes> batches, const std::vector<std::vector<Digest>>& asked) {
@@ -109,6 +109,7 @@ void Distributor::send(const char* what, std::vector<Bytes> batches, const std::
                         {"answers"}});
     }
     counts_.batches += jobs.size();
+    if (progress) progress(what, 0, jobs.size());
     std::atomic<size_t> ended{0};
     const std::vector<Result<JobResult>> results = engine_.run_all(jobs, deadline_, [&] {
         const size_t now = ++ended;

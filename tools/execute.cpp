@@ -95,6 +95,7 @@ void execution_json(Json& json, const Execution& execution) {
 std::string execution_text(const Execution& execution) {
     const DistributionCounts& c = execution.distributor->counts();
     const auto n = [](uint64_t v) { return Count(v).grouped(); };
+    if (c.questions == 0) return "  " + execution.engine->name() + " was not asked: everything was in the cache\n";
     return "  " + execution.engine->name() + " answered " + n(c.answered) + " of " + n(c.questions) + " in " + n(c.batches) +
            " batches (" + n(c.failed_batches) + " failed, " + n(c.cached_batches) + " from its cache), " + n(c.bytes_out) +
            " bytes out, " + n(c.bytes_in) + " back\n";
@@ -103,8 +104,11 @@ std::string execution_text(const Execution& execution) {
 std::string execution_warning(const Execution& execution) {
     const DistributionCounts& c = execution.distributor->counts();
     if (c.failed_batches == 0) return {};
-    return execution.engine->name() + " failed " + std::to_string(c.failed_batches) + " of " + std::to_string(c.batches) +
-           " batches, which were done here: " + c.first_problem;
+    const std::string name = execution.engine->name();  // of a single node, its problems begin with it
+    const std::string problem =
+        c.first_problem.starts_with(name + ": ") ? c.first_problem.substr(name.size() + 2) : c.first_problem;
+    return name + " failed " + std::to_string(c.failed_batches) + " of " + std::to_string(c.batches) +
+           " batches, which were done here: " + problem;
 }
 
 int print_plan(const Args& args, const BuildOptions& options, PassContext& context) {

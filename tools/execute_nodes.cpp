@@ -4,7 +4,6 @@
 
 #include "cache/client/private_file.h"
 #include "cache/execute/reapi_engine.h"
-#include "compiler/base/files.h"
 #include "compiler/base/jobs.h"
 #include "tools/execute.h"
 
@@ -22,7 +21,7 @@ Result<std::unique_ptr<Engine>> open_nodes(const std::vector<std::string>& addre
     std::vector<RemoteUrl> nodes;
     bool clear = false;
     for (const std::string& address : addresses) {
-        auto url = RemoteUrl::parse(address);
+        auto url = RemoteUrl::parse(address, "--execute");
         KILN_TRY(url);
         if (url->scheme != "grpc" && url->scheme != "grpcs")
             return Error{Fault::usage, "--execute '" + address + "': nodes are grpc:// or grpcs://"};
@@ -41,10 +40,9 @@ Result<std::unique_ptr<Engine>> open_nodes(const std::vector<std::string>& addre
         options.remote.token = *token;
     }
     if (const std::string file = environment("KILN_EXECUTE_CA"); !file.empty()) {
-        const auto pem = DiskFiles().read(file);
+        const auto pem = read_authorities(file, "KILN_EXECUTE_CA");
         KILN_TRY(pem);
-        if (!pem->has_value()) return input_error("KILN_EXECUTE_CA: no certificates at '" + file + "'");
-        options.remote.authority = **pem;
+        options.remote.authority = *pem;
     }
     std::string properties = environment("KILN_EXECUTE_PLATFORM");
     while (!properties.empty()) {

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "cache/disk_folder.h"
+#include "compiler/base/files.h"
 
 namespace kiln {
 
@@ -40,6 +41,15 @@ Result<std::string> token_of(const std::string& text, const std::string& where) 
     const bool visible = std::all_of(token.begin(), token.end(), [](char c) { return c > ' ' && c < 0x7f; });
     if (!visible || token.size() > 4096) return environment_error(where + " does not hold one token of visible ASCII");
     return token;
+}
+
+Result<std::string> read_authorities(const std::string& path, const std::string& what) {
+    const auto pem = DiskFiles().read(path);
+    KILN_TRY(pem);
+    if (!pem->has_value()) return input_error(what + ": no file '" + path + "'");
+    if ((*pem)->find("-----BEGIN CERTIFICATE-----") == std::string::npos)
+        return input_error(what + ": '" + path + "' holds no certificates (PEM)");
+    return **pem;
 }
 
 }  // namespace kiln

@@ -6,7 +6,6 @@
 #include "cache/client/grpc_remote.h"
 #include "cache/client/http_remote.h"
 #include "cache/client/private_file.h"
-#include "compiler/base/files.h"
 #include "compiler/base/jobs.h"
 
 namespace kiln {
@@ -35,11 +34,9 @@ Result<std::unique_ptr<RemoteStore>> open_remote_store(const RemoteUrl& url, con
     grpc.token = options.token;
     grpc.interrupted = &interrupted;
     if (!options.ca_file.empty()) {
-        DiskFiles files;
-        const auto pem = files.read(options.ca_file);
+        const auto pem = read_authorities(options.ca_file, "KILN_CACHE_CA");
         KILN_TRY(pem);
-        if (!pem->has_value()) return input_error("cache '" + url.text() + "': no certificates at '" + options.ca_file + "'");
-        grpc.authority = **pem;
+        grpc.authority = *pem;
     }
     return open_grpc_remote(url, grpc, options.limits);
 }

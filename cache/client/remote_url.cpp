@@ -22,14 +22,14 @@ bool all_of(std::string_view text, const char* others) {
 
 bool is_url(std::string_view text) { return text.find("://") != std::string_view::npos; }
 
-Result<RemoteUrl> RemoteUrl::parse(std::string_view text) {
+Result<RemoteUrl> RemoteUrl::parse(std::string_view text, const std::string& what) {
     // The text is not repeated where it may hold a password.
     const auto wrong = [&](const std::string& why) {
         const bool secret = text.find('@') != std::string_view::npos;
-        return Error{Fault::usage, "cache " + (secret ? std::string("address") : "'" + std::string(text) + "'") + ": " + why};
+        return Error{Fault::usage, what + " " + (secret ? std::string("address") : "'" + std::string(text) + "'") + ": " + why};
     };
     if (text.find('@') != std::string_view::npos)
-        return wrong("no user or password belongs in it; a token is read from KILN_CACHE_TOKEN_FILE or KILN_CACHE_TOKEN");
+        return wrong("no user or password belongs in it; tokens are read from files (kiln help environment)");
     if (text.size() > 2000) return wrong("it is too long");
     RemoteUrl url;
     const size_t colon = text.find("://");

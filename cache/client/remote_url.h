@@ -14,7 +14,8 @@ struct RemoteUrl {
     std::string path;          // "" or "/a/b", without a slash at the end
 
     // Refuses everything else that URLs may hold: user names and passwords, queries, fragments, escapes, `..`.
-    static Result<RemoteUrl> parse(std::string_view text);
+    // `what` is named in the Error ("cache", "--execute").
+    static Result<RemoteUrl> parse(std::string_view text, const std::string& what = "cache");
     std::string text() const;
     bool tls() const { return scheme == "https" || scheme == "grpcs"; }
     bool loopback() const;

@@ -27,4 +27,11 @@ std::vector<Result<JobResult>> Engine::run_all(std::span<const Job> jobs, std::c
     return out;
 }
 
+std::string one_line(std::string_view text) {
+    std::string out;
+    for (const char c : text.substr(0, 300)) out += c >= ' ' && c <= '~' ? c : ' ';
+    while (!out.empty() && out.back() == ' ') out.pop_back();
+    return out;
+}
+
 }  // namespace kiln

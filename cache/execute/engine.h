@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -46,6 +47,9 @@ public:
     virtual std::vector<Result<JobResult>> run_all(std::span<const Job> jobs, std::chrono::milliseconds deadline,
                                                    const std::function<void()>& done);
 };
+
+// Somebody else's words for a person: one line of at most 300 characters, without what a terminal would obey.
+std::string one_line(std::string_view text);
 
 // No output that comes back may be larger.
 constexpr uint64_t largest_output = uint64_t{256} << 20;

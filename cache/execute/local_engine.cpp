@@ -7,13 +7,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <thread>
 
 #include "cache/protocol/action_result.h"
+#include "compiler/base/jobs.h"
 
 extern char** environ;
 
@@ -76,7 +79,7 @@ Result<JobResult> read_outputs(const Job& job, const std::string& folder) {
 }
 
 Result<int> run_process(const std::vector<std::string>& arguments, const std::string& folder, const std::string& log,
-                        std::chrono::milliseconds deadline) {
+                        std::chrono::milliseconds deadline, const std::atomic<bool>* stop) {
     std::vector<char*> argv;
     for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
     argv.push_back(nullptr);
@@ -103,24 +106,36 @@ Result<int> run_process(const std::vector<std::string>& arguments, const std::st
         if (got < 0 && errno != EINTR) return failed(arguments[0]);
         if (got == child && WIFEXITED(status)) return WEXITSTATUS(status);
         if (got == child) return environment_error(arguments[0] + " was ended by signal " + std::to_string(WTERMSIG(status)));
-        if (std::chrono::steady_clock::now() > end) {
+        const bool stopped = stop != nullptr && stop->load();
+        if (stopped || std::chrono::steady_clock::now() > end) {
             ::kill(-child, SIGKILL);
             ::waitpid(child, &status, 0);
-            return environment_error(arguments[0] + " did not end in time");
+            return environment_error(stopped ? "interrupted" : arguments[0] + " did not end in time");
         }
         std::this_thread::sleep_for(pause);
         pause = std::min(pause * 2, std::chrono::milliseconds(20));
     }
 }
 
+std::string last_words(const std::string& log) {
+    constexpr std::streamoff most = 300;
+    std::ifstream in(log, std::ios::binary | std::ios::ate);
+    if (!in) return {};
+    in.seekg(std::max(std::streamoff{0}, static_cast<std::streamoff>(in.tellg()) - most));
+    const std::string words = one_line(std::string(std::istreambuf_iterator<char>(in), {}));
+    return words.empty() ? words : ": " + words;
+}
+
 Result<JobResult> LocalEngine::run(const Job& job, std::chrono::milliseconds deadline) {
+    if (interrupted) return environment_error("interrupted");
     const auto folder = ScratchFolder::make(std::filesystem::temp_directory_path().string());
     KILN_TRY(folder);
     const std::string& path = (*folder)->path();
     KILN_TRY(write_inputs(job, path));
-    const Result<int> code = run_process(job.arguments, path, path + "/log", deadline);
+    const Result<int> code = run_process(job.arguments, path, path + "/log", deadline, &interrupted);
     KILN_TRY(code);
-    if (*code != 0) return environment_error(job.arguments[0] + " ended with " + std::to_string(*code));
+    if (*code != 0)
+        return environment_error(job.arguments[0] + " ended with " + std::to_string(*code) + last_words(path + "/log"));
     return read_outputs(job, path);
 }
 

@@ -2,6 +2,8 @@
 // Jobs as processes of this machine, each in a folder of its own: the engine of tests, and of a machine whose jobs a sandbox
 // or a limit should keep apart.
 
+#include <atomic>
+
 #include "cache/execute/engine.h"
 
 namespace kiln {
@@ -34,9 +36,12 @@ private:
     const std::string path_;
 };
 
-// Runs a program in a folder until it ends or the deadline passes, when it is killed. Its output goes to `log`. The exit
-// code, or an Error: could not start, killed, out of time.
+// Runs a program in a folder until it ends, or until the deadline passes or `stop` is set, when it is killed with all that it has
+// started. Its output goes to `log`. The exit code, or an Error: could not start, killed, out of time.
 Result<int> run_process(const std::vector<std::string>& arguments, const std::string& folder, const std::string& log,
-                        std::chrono::milliseconds deadline);
+                        std::chrono::milliseconds deadline, const std::atomic<bool>* stop);
+
+// What a failed job's log ends with, for a message: ": the last words", or nothing.
+std::string last_words(const std::string& log);
 
 }  // namespace kiln

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "cache/execute/local_engine.h"
+#include "compiler/base/jobs.h"
 
 namespace kiln {
 namespace {
@@ -41,6 +42,7 @@ std::vector<Result<JobResult>> SlurmEngine::run_all(std::span<const Job> jobs, s
                                                     const std::function<void()>& done) {
     const auto all = [&](const Error& error) { return std::vector<Result<JobResult>>(jobs.size(), error); };
     if (jobs.empty()) return {};
+    if (interrupted) return all(environment_error("interrupted"));
     const auto scratch = ScratchFolder::make(shared_);
     if (!scratch.ok()) return all(scratch.error());
     const std::string& base = (*scratch)->path();
@@ -63,21 +65,29 @@ std::vector<Result<JobResult>> SlurmEngine::run_all(std::span<const Job> jobs, s
     command.insert(command.end(), options_.begin(), options_.end());
     command.push_back(script);
     const std::string log = base + "/sbatch.log";
-    const Result<int> code = run_process(command, base, log, deadline);
+    const Result<int> code = run_process(command, base, log, deadline, &interrupted);
+    std::string number;  // the first thing that sbatch said, with ";CLUSTER" behind it where there are several
+    std::getline(std::ifstream(log), number);
+    const size_t digits = number.find_first_not_of("0123456789");
+    const bool submitted = digits != 0 && !number.empty() && (digits == std::string::npos || number[digits] == ';');
     if (!code.ok()) {
-        // The array is still there: its number was the first thing that sbatch said.
-        std::string number;
-        std::ifstream(log) >> number;
-        if (!number.empty() && number.find_first_not_of("0123456789") == std::string::npos)
-            static_cast<void>(run_process({"scancel", number}, base, log, std::chrono::seconds(10)));
-        return all(code.error());
+        if (submitted) {  // the array is still there
+            std::vector<std::string> scancel{"scancel", number.substr(0, digits)};
+            if (digits != std::string::npos) scancel.insert(scancel.begin() + 1, "--clusters=" + number.substr(digits + 1));
+            static_cast<void>(run_process(scancel, base, log, std::chrono::seconds(10), nullptr));
+        }
+        if (interrupted) return all(code.error());
     }
+    if (code.ok() && !submitted) return all(environment_error("sbatch took no array" + last_words(log)));
     std::vector<Result<JobResult>> out;
     for (size_t i = 0; i < jobs.size(); ++i) {
-        int ended = -1;
+        int ended = -1;  // nothing is left by a job that was killed, or whose node was lost
         std::ifstream(folders[i] + "/code") >> ended;
-        if (ended != 0)
-            out.push_back(environment_error("job " + std::to_string(i) + " of the array ended with " + std::to_string(ended)));
+        const std::string name = "job " + std::to_string(i) + " of array " + number;
+        if (ended < 0)
+            out.push_back(code.ok() ? environment_error(name + " was lost before it ended") : code.error());
+        else if (ended != 0)
+            out.push_back(environment_error(name + " ended with " + std::to_string(ended) + last_words(folders[i] + "/log")));
         else
             out.push_back(read_outputs(jobs[i], folders[i]));
         if (done) done();

@@ -11,7 +11,8 @@ public:
     // `shared`: a folder that every node sees under this name; `options`: further words for sbatch ("--partition=short").
     SlurmEngine(std::string shared, std::vector<std::string> options);
     std::string name() const override { return "slurm:" + shared_; }
-    size_t width() const override { return 1000; }
+    // Twice as many batches are made, and Slurm's own bound of an array is a thousand (MaxArraySize).
+    size_t width() const override { return 500; }
     Result<JobResult> run(const Job& job, std::chrono::milliseconds deadline) override;
     std::vector<Result<JobResult>> run_all(std::span<const Job> jobs, std::chrono::milliseconds deadline,
                                            const std::function<void()>& done) override;

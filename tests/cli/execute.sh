@@ -84,3 +84,14 @@ expect_json out 'd["model"][0]["workers"], d["model"][0]["batches"]' '4 2'
 expect_code 0 kiln build p/m.yaml --distributed-plan
 expect_out '64 workers'
 [ ! -e x.kiln ] || fail 'a plan wrote a table'
+
+# Options that would be of no effect, and settings that cannot be right, are told before anything is built.
+expect_code 2 kiln build p/m.yaml -o x.kiln --workers 3
+expect_code 2 kiln build p/m.yaml -o x.kiln --execute-timeout 3
+expect_code 2 kiln build p/m.yaml -o x.kiln --execute grpc://
+expect_err "execute 'grpc://'"
+expect_code 2 kiln build p/m.yaml -o x.kiln --execute grpc://a,http://b
+KILN_EXECUTE_CA=$t/p/m.yaml expect_code 1 kiln build p/m.yaml -o x.kiln --execute grpcs://127.0.0.1:1
+expect_err 'holds no certificates'
+KILN_EXECUTE_PLATFORM=x expect_code 2 kiln build p/m.yaml -o x.kiln --execute grpc://127.0.0.1:1
+[ ! -e x.kiln ] || fail 'a table was written'

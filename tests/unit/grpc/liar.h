@@ -10,6 +10,7 @@
 #include <map>
 #include <mutex>
 #include <thread>
+#include <vector>
 
 #include "cache/client/grpc_remote.h"
 #include "cache/protocol/resource_name.h"
@@ -27,7 +28,7 @@ class Liar final : public reapi::Capabilities::Service,
                    public reapi::ContentAddressableStorage::Service,
                    public google::bytestream::ByteStream::Service {
 public:
-    explicit Liar(grpc::Service* more = nullptr) {
+    explicit Liar(const std::vector<grpc::Service*>& more = {}) {
         capabilities.mutable_cache_capabilities()->add_digest_functions(reapi::DigestFunction::SHA256);
         capabilities.mutable_cache_capabilities()->mutable_action_cache_update_capabilities()->set_update_enabled(true);
         versions(2, 0, 2, 11);
@@ -38,7 +39,7 @@ public:
         builder.RegisterService(static_cast<reapi::ActionCache::Service*>(this));
         builder.RegisterService(static_cast<reapi::ContentAddressableStorage::Service*>(this));
         builder.RegisterService(static_cast<google::bytestream::ByteStream::Service*>(this));
-        if (more != nullptr) builder.RegisterService(more);
+        for (grpc::Service* service : more) builder.RegisterService(service);
         server = builder.BuildAndStart();
     }
     ~Liar() override { stop(); }

@@ -1,13 +1,14 @@
 #include "cache/execute/reapi_engine.h"
 
 #include <gtest/gtest.h>
+#include <operations.grpc.pb.h>
 
 #include <set>
 
 #include "cache/execute/reapi_action.h"
 #include "tests/unit/grpc/liar.h"
 
-kiln::OpenReapiEngine kiln_grpc_open_engine_1 __asm__("kiln_grpc_open_engine_1");
+kiln::OpenReapiEngine kiln_grpc_open_engine_2 __asm__("kiln_grpc_open_engine_2");
 
 namespace kiln::testing {
 namespace {
@@ -27,9 +28,10 @@ Job job() {
 }
 
 // An engine whose every action makes "out" of the text "made", until a test replaces its answer.
-class Node final : public reapi::Execution::Service {
+class Node final : public reapi::Execution::Service, public google::longrunning::Operations::Service {
 public:
-    Node() : store(this) {
+    Node()
+        : store({static_cast<reapi::Execution::Service*>(this), static_cast<google::longrunning::Operations::Service*>(this)}) {
         store.versions(2, 0, 2, 3);
         // What an engine's clients usually may not.
         store.capabilities.mutable_cache_capabilities()->mutable_action_cache_update_capabilities()->set_update_enabled(false);
@@ -52,6 +54,20 @@ public:
         if (request->name() != "operation/1") return {grpc::StatusCode::INVALID_ARGUMENT, request->name()};
         answer(out, result());
         return grpc::Status::OK;
+    }
+
+    grpc::Status CancelOperation(ServerContext*, const google::longrunning::CancelOperationRequest* request,
+                                 google::protobuf::Empty*) override {
+        EXPECT_EQ(request->name(), "operation/1");
+        ++cancels;
+        return grpc::Status::OK;
+    }
+    // Says that it works, and then nothing more.
+    void work(ServerContext* context, Answers* out) {
+        Operation running;
+        running.set_name("operation/1");
+        out->Write(running);
+        store.hang(context);
     }
 
     reapi::ActionResult result(const std::string& text = "made") {
@@ -80,7 +96,7 @@ public:
     std::string url() const { return "grpc://127.0.0.1:" + std::to_string(store.port) + "/team/main"; }
 
     Liar store;
-    std::atomic<size_t> executions{0}, waits{0};
+    std::atomic<size_t> executions{0}, waits{0}, cancels{0};
     bool forgets = false;
     reapi::ExecuteRequest asked;
     std::string token;
@@ -90,7 +106,7 @@ public:
 std::unique_ptr<Engine> engine(std::vector<const Node*> nodes, ReapiOptions options = {}) {
     std::vector<RemoteUrl> urls;
     for (const Node* node : nodes) urls.push_back(*RemoteUrl::parse(node->url()));
-    return std::move(*kiln_grpc_open_engine_1(urls, options));
+    return std::move(*kiln_grpc_open_engine_2(urls, options));
 }
 
 constexpr std::chrono::seconds ample{20};
@@ -274,6 +290,123 @@ TEST(ReapiEngine, AHangEndsWithTheDeadline) {
     ReapiOptions options;
     options.remote.interrupted = &interrupted;
     EXPECT_FALSE(engine({&node}, options)->run(job(), ample).ok());
+}
+
+TEST(ReapiEngine, WhatNobodyWaitsForIsCancelled) {
+    Node node;
+    EXPECT_EQ(text_of(engine({&node})->run(job(), ample)), "made");
+    EXPECT_EQ(node.cancels, 0u);
+    node.on_execute = [&](ServerContext* context, const reapi::ExecuteRequest&, Answers* out) {
+        node.work(context, out);
+        return grpc::Status::OK;
+    };
+    EXPECT_TRUE(says(engine({&node})->run(job(), std::chrono::milliseconds(300)), "in time"));
+    EXPECT_EQ(node.cancels, 1u);
+    std::atomic<bool> interrupted{false};
+    ReapiOptions options;
+    options.remote.interrupted = &interrupted;
+    node.executions = 0;
+    std::thread stop([&] {
+        while (node.executions == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        interrupted = true;
+    });
+    EXPECT_TRUE(says(engine({&node}, options)->run(job(), ample), "interrupted"));
+    stop.join();
+    EXPECT_EQ(node.cancels, 2u);
+}
+
+TEST(ReapiEngine, ASilentNodeIsAskedWhetherItIsThere) {
+    Node node, other;
+    ReapiOptions options;
+    options.silence = std::chrono::milliseconds(100);
+    options.remote.timeout = std::chrono::milliseconds(500);
+    std::atomic<bool> dead{false};
+    node.on_execute = [&](ServerContext* context, const reapi::ExecuteRequest&, Answers* out) {
+        const size_t asked = node.store.calls;
+        if (dead) node.work(context, out);
+        while (node.store.calls < asked + 3 && !node.store.ending) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        node.answer(out, node.result());
+        return grpc::Status::OK;
+    };
+    EXPECT_EQ(text_of(engine({&node}, options)->run(job(), ample)), "made");  // it works, and answers
+    node.store.on_capabilities = [&](ServerContext* context, reapi::ServerCapabilities* out) {
+        if (dead && node.executions != 0) node.store.hang(context);
+        *out = node.store.capabilities;
+        return grpc::Status::OK;
+    };
+    dead = true;
+    node.executions = 0;
+    EXPECT_TRUE(says(engine({&node}, options)->run(job(), ample), "does not answer any more"));
+    EXPECT_EQ(node.executions, 1u);
+    node.executions = 0;
+    const auto both = engine({&node, &other}, options);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(text_of(both->run(job(), ample)), "made");  // another does its work
+    EXPECT_EQ(node.executions, 1u);
+    EXPECT_EQ(other.executions, 3u);
+}
+
+TEST(ReapiEngine, ASlowFailureIsNotSufferedByEveryJob) {
+    Node node;
+    node.store.on_capabilities = [&](ServerContext* context, reapi::ServerCapabilities*) {
+        node.store.hang(context);
+        return grpc::Status::OK;
+    };
+    ReapiOptions options;
+    options.remote.timeout = std::chrono::milliseconds(1500);
+    const std::vector<Job> jobs(8, job());
+    const auto results = engine({&node}, options)->run_all(jobs, ample, {});
+    EXPECT_EQ(std::count_if(results.begin(), results.end(), [](const auto& r) { return says(r, "in time"); }), 1);
+    EXPECT_EQ(std::count_if(results.begin(), results.end(), [](const auto& r) { return says(r, "a moment ago"); }), 7);
+    EXPECT_EQ(node.store.calls, 1u);
+}
+
+TEST(ReapiEngine, AServerThatDoesNotExecuteIsSentNothing) {
+    Node node;
+    node.store.capabilities.mutable_execution_capabilities()->set_exec_enabled(false);
+    EXPECT_TRUE(says(engine({&node})->run(job(), ample), "does not execute"));
+    EXPECT_EQ(node.store.blobs.size(), 0u);
+    EXPECT_EQ(node.executions, 0u);
+    node.store.capabilities.mutable_execution_capabilities()->set_exec_enabled(true);
+    EXPECT_EQ(text_of(engine({&node})->run(job(), ample)), "made");
+    node.store.on_capabilities = [](ServerContext*, reapi::ServerCapabilities*) {
+        return grpc::Status(grpc::StatusCode::UNIMPLEMENTED, "");
+    };
+    EXPECT_EQ(text_of(engine({&node})->run(job(), ample)), "made");  // one that does not say what it can do
+}
+
+TEST(ReapiEngine, ANodesOwnTroubleIsNotTheJobs) {
+    for (const bool in_answer : {false, true}) {
+        Node bad, good;
+        bad.on_execute = [&](ServerContext*, const reapi::ExecuteRequest&, Answers* out) {
+            if (!in_answer) return grpc::Status(grpc::StatusCode::RESOURCE_EXHAUSTED, "the queue is full");
+            reapi::ExecuteResponse response;
+            response.mutable_status()->set_code(grpc::StatusCode::INTERNAL);
+            response.mutable_status()->set_message("its store\nis away");
+            Node::answer(out, response);
+            return grpc::Status::OK;
+        };
+        const auto client = engine({&bad, &good});
+        for (int i = 0; i < 3; ++i) EXPECT_EQ(text_of(client->run(job(), ample)), "made");
+        EXPECT_EQ(bad.executions, 1u);
+        EXPECT_TRUE(says(engine({&bad})->run(job(), ample), in_answer ? "13: its store is away" : "8: the queue is full"));
+    }
+}
+
+TEST(ReapiEngine, ARememberedFailureIsTriedAnew) {
+    Node node;
+    bool for_ever = false;
+    node.on_execute = [&](ServerContext*, const reapi::ExecuteRequest& request, Answers* out) {
+        reapi::ActionResult result = node.result();
+        if (!request.skip_cache_lookup() || for_ever) result.set_exit_code(137);
+        node.answer(out, result, !request.skip_cache_lookup());
+        return grpc::Status::OK;
+    };
+    EXPECT_EQ(text_of(engine({&node})->run(job(), ample)), "made");
+    EXPECT_EQ(node.executions, 2u);
+    for_ever = true;
+    EXPECT_TRUE(says(engine({&node})->run(job(), ample), "ended with 137"));
+    EXPECT_EQ(node.executions, 4u);
 }
 
 TEST(ReapiEngine, NothingThatComesBackIsBelieved) {
