@@ -9,13 +9,12 @@
 #include <vector>
 
 #include "compiler/base/files.h"
+#include "compiler/base/version.h"
 #include "compiler/interfaces/interfaces.h"
 #include "compiler/space/scene.h"
 #include "compiler/table/table.h"
 
 namespace kiln {
-
-extern const char* const kiln_version;
 
 struct BuildOptions {
     std::string manifest;

@@ -65,7 +65,7 @@ void Distributor::modules(std::span<const ModuleQuestion> questions) {
     std::vector<Bytes> batches;
     std::vector<std::vector<Digest>> asked;
     for (const auto part : cut(open, batches_for(open.size(), module_ms, engine_.width()))) {
-        batches.push_back(write_batch(tools_.versions(), part, {}));
+        batches.push_back(write_batch(tools_.identity(), part, {}));
         for (asked.emplace_back(); const ModuleQuestion& q : part) asked.back().push_back(q.action);
     }
     send("batches compiled elsewhere", std::move(batches), asked);
@@ -91,7 +91,7 @@ void Distributor::artifacts(std::span<const ArtifactQuestion> questions) {
     std::vector<Bytes> batches;
     std::vector<std::vector<Digest>> asked;
     for (const auto part : cut(open, batches_for(open.size(), each, engine_.width()))) {
-        batches.push_back(write_batch(tools_.versions(), {}, part));
+        batches.push_back(write_batch(tools_.identity(), {}, part));
         asked.emplace_back();
         for (const ArtifactQuestion& q : part) asked.back().insert(asked.back().end(), q.actions.begin(), q.actions.end());
     }

@@ -115,7 +115,7 @@ int print_plan(const Args& args, const BuildOptions& options, PassContext& conte
     const auto workers = args.number("--workers", 0, 1, 100'000);
     if (!workers.ok()) return print_error(workers.error());
     NoStore none;
-    DistributionPlan plan(context.tools.versions());
+    DistributionPlan plan(context.tools.identity());
     PassContext cold{context.files, none, context.tools, context.jobs, context.progress, &plan};
     const Build build = run_pass(options, cold);
     if (const int code = report_build(build); code != 0) return code;

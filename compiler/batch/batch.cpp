@@ -221,7 +221,9 @@ Bytes write_batch(const std::string& versions, std::span<const ModuleQuestion> m
 Result<Bytes> answer_batch(ByteView batch, Toolchain& tools, const Jobs& jobs) {
     std::optional<WireReader> in = open(batch, batch_mark);
     if (!in) return input_error("this is no batch of work, or it is damaged");
-    if (in->text() != tools.versions()) return environment_error("the batch was made by a kiln with other tools than this one");
+    if (in->text() != tools.identity())
+        return environment_error(
+            "the batch was made by another kiln than this worker's; install both together, or unset KILN_WORKER");
     std::vector<ModuleQuestion> modules;
     std::vector<std::string> texts;
     for (size_t n = in->count(60); n > 0 && in->ok(); --n) {

@@ -14,10 +14,11 @@
 
 namespace kiln {
 
+// `versions`: the toolchain's identity.
 Bytes write_batch(const std::string& versions, std::span<const ModuleQuestion> modules,
                   std::span<const ArtifactQuestion> artifacts);
 
-// What a worker does. An Error for what is no batch, or one of other versions of the tools: its answers would differ.
+// What a worker does. An Error for what is no batch, or one of another kiln: its answers would differ.
 Result<Bytes> answer_batch(ByteView batch, Toolchain& tools, const Jobs& jobs);
 
 // Puts into the store what answers a question that was asked: every blob is hashed, every record read. Returns how many were

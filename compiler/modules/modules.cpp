@@ -80,7 +80,7 @@ public:
 private:
     // Distinct units, in the order of stages and classes.
     void collect() {
-        const std::string versions = tools_.versions();
+        const std::string versions = tools_.identity();
         std::map<Digest, size_t> known;
         unit_of_.resize(stages_.size());
         for (size_t s = 0; s < stages_.size(); ++s) {

@@ -2,6 +2,7 @@
 
 #include "compiler/toolchain/toolchain.h"
 
+#include "compiler/base/version.h"
 #include "compiler/toolchain/cross.h"
 #include "compiler/toolchain/glsl.h"
 #include "compiler/toolchain/spirv.h"
@@ -12,6 +13,8 @@ namespace {
 class RealToolchain final : public Toolchain {
 public:
     std::string versions() const override { return versions_; }
+    // Pruning, reflection and the edits before a translation are kiln's own.
+    std::string identity() const override { return versions_ + "; kiln " + kiln_version; }
     Compiled compile(Stage stage, std::string_view text, const Options& options) override {
         return glsl_compile(stage, text, options);
     }

@@ -76,8 +76,9 @@ struct Translated {
 class Toolchain {
 public:
     virtual ~Toolchain() = default;
-    virtual std::string versions()
-        const = 0;  // every tool and its version, for cache keys and the table. Must not initialise glslang
+    virtual std::string versions() const = 0;  // every tool and its version, for the table. Must not initialise glslang
+    // For cache keys: versions(), and whatever else decides what the following return.
+    virtual std::string identity() const { return versions(); }
 
     // GLSL tokens to unoptimised SPIR-V. `options.debug` keeps source names and lines.
     virtual Compiled compile(Stage stage, std::string_view text, const Options& options) = 0;

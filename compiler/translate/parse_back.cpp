@@ -93,7 +93,7 @@ private:
     }
 
     void ask() {
-        const std::string versions = c_.tools.versions();
+        const std::string versions = c_.tools.identity();
         size_t done = 0;
         std::mutex mutex;
         c_.jobs.each(items_.size(), [&](size_t i) {

@@ -101,7 +101,7 @@ private:
     }
 
     bool translate() {
-        const std::string versions = tools_.versions();
+        const std::string versions = tools_.identity();
         const bool named = jobs_.each(units_.size(), [&](size_t u) {
             for (const size_t t : wanted_)
                 units_[u].actions.push_back(

@@ -95,3 +95,20 @@ KILN_EXECUTE_CA=$t/p/m.yaml expect_code 1 kiln build p/m.yaml -o x.kiln --execut
 expect_err 'holds no certificates'
 KILN_EXECUTE_PLATFORM=x expect_code 2 kiln build p/m.yaml -o x.kiln --execute grpc://127.0.0.1:1
 [ ! -e x.kiln ] || fail 'a table was written'
+
+# A kiln of other sources: its worker refuses, and its cache entries are not ours.
+number=$(kiln --version | sed -n 's/^kiln .*+//p')
+[ ${#number} = 16 ] || fail "no digest of the sources in $(kiln --version | head -1)"
+other=$(tr 0-9a-f 1-9a-f0 <<<"$number")
+sed "s/$number/$other/g" "$real_worker" >other_worker && chmod +x other_worker
+KILN_WORKER=$t/other_worker kiln build p/m.yaml -o away/t.kiln --cache none --execute local:2 >out 2>err
+cmp home/t.kiln away/t.kiln
+grep -q 'answered 0 of' out && grep -q 'another kiln' err || { cat out err; fail 'a worker of another kiln worked'; }
+sed "s/$number/$other/g" "$KILN" >other_kiln && chmod +x other_kiln
+kiln build p/m.yaml -o away/t.kiln --cache both --report-json r.json >/dev/null
+compiled=$(json r.json 'd["work"]["compiled"], d["work"]["translated"]')
+echo '// a remark' >>p/paint.frag
+kiln build p/m.yaml -o away/t.kiln --cache both --report-json r.json >/dev/null
+expect_json r.json 'd["work"]["compiled"], d["work"]["translated"]' '0 0'
+./other_kiln build p/m.yaml -o away/t.kiln --cache both --report-json r.json >/dev/null
+expect_json r.json 'd["work"]["compiled"], d["work"]["translated"]' "$compiled"

@@ -21,12 +21,12 @@ struct Asked {
     explicit Asked(std::vector<std::string> of) : texts(std::move(of)) {
         for (const std::string& text : texts) {
             const Options options;
-            const Digest action = module_action(tools->versions(), options, Stage::fragment, text);
+            const Digest action = module_action(tools->identity(), options, Stage::fragment, text);
             modules.push_back({Stage::fragment, options, text, action});
             actions.push_back(action);
         }
     }
-    Bytes batch() const { return write_batch(tools->versions(), modules, {}); }
+    Bytes batch() const { return write_batch(tools->identity(), modules, {}); }
 };
 
 TEST(Batch, AnswersAreTheRecordsThatABuildWouldMake) {
@@ -57,8 +57,8 @@ TEST(Batch, TranslatesIntoEachTargetOrSaysWhyNot) {
     const Digest module = sha256(as_bytes(WordView(compiled.words)));
     ArtifactQuestion question{compiled.words, &slots, {Target::glsl450, Target::msl21}, {}};
     for (const Target t : question.targets)
-        question.actions.push_back(artifact_action(asked.tools->versions(), t, slots, module));
-    const Result<Bytes> answers = answer_batch(write_batch(asked.tools->versions(), {}, {&question, 1}), *asked.tools, Jobs(2));
+        question.actions.push_back(artifact_action(asked.tools->identity(), t, slots, module));
+    const Result<Bytes> answers = answer_batch(write_batch(asked.tools->identity(), {}, {&question, 1}), *asked.tools, Jobs(2));
     ASSERT_TRUE(answers.ok()) << answers.error().message;
     MemoryStore store;
     const Result<size_t> taken = take_answers(*answers, question.actions, store);
@@ -110,7 +110,7 @@ TEST(Batch, AWorkerWithOtherToolsRefuses) {
     const Asked asked({good});
     const Result<Bytes> answers = answer_batch(write_batch("another compiler", asked.modules, {}), *asked.tools, Jobs(1));
     ASSERT_FALSE(answers.ok());
-    EXPECT_NE(answers.error().message.find("other tools"), std::string::npos);
+    EXPECT_NE(answers.error().message.find("another kiln"), std::string::npos);
 }
 
 }  // namespace
