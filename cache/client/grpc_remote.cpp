@@ -415,6 +415,7 @@ std::shared_ptr<grpc::Channel> open_grpc_channel(const RemoteUrl& url, const Grp
     arguments.SetInt(GRPC_ARG_ENABLE_RETRIES, 0);
     arguments.SetInt(GRPC_ARG_SERVICE_CONFIG_DISABLE_RESOLUTION, 1);
     arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+    if (url.loopback()) arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);  // a token may go there in clear text, and nowhere else
     // A connection that was lost is tried again soon: when to stop asking is the breaker's business.
     arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
     arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 2000);

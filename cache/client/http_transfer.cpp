@@ -94,6 +94,7 @@ struct HttpTransfer::Engine {
         std::span<const HttpRequest> requests;
         std::vector<HttpReply> replies;
         size_t next = 0, done = 0;
+        uint64_t held = 0;  // bytes of its bodies
         unsigned patience = 0, unanswered = 0;
         bool abandoned() const { return patience != 0 && unanswered >= patience; }
     };
@@ -172,6 +173,7 @@ struct HttpTransfer::Engine {
             return 0;
         }
         slot.engine->in_flight += bytes;
+        slot.batch->held += bytes;
         Bytes& body = slot.batch->replies[slot.index].body;
         body.insert(body.end(), data, data + bytes);
         return bytes;
@@ -206,6 +208,7 @@ struct HttpTransfer::Engine {
         set(CURLOPT_PROTOCOLS_STR, "http,https");
         set(CURLOPT_HTTP_VERSION, long{CURL_HTTP_VERSION_1_1});
         set(CURLOPT_FOLLOWLOCATION, 0L);
+        if (options.no_proxy) set(CURLOPT_PROXY, "");
         set(CURLOPT_SSLVERSION, long{CURL_SSLVERSION_TLSv1_2});
         if (!options.ca_file.empty()) set(CURLOPT_CAINFO, options.ca_file.c_str());
         set(CURLOPT_NOSIGNAL, 1L);
@@ -246,7 +249,6 @@ struct HttpTransfer::Engine {
 
     void finish(Slot& slot, CURLcode code) {
         HttpReply& reply = slot.batch->replies[slot.index];
-        in_flight -= std::min<uint64_t>(in_flight, reply.body.size());
         long status = 0;
         curl().easy_getinfo(slot.easy, CURLINFO_RESPONSE_CODE, &status);
         if (code == CURLE_OK && status != 0) {
@@ -274,7 +276,6 @@ struct HttpTransfer::Engine {
         for (Slot& slot : slots)
             if (slot.batch == &batch) {
                 HttpReply& reply = batch.replies[slot.index];
-                in_flight -= std::min<uint64_t>(in_flight, reply.body.size());
                 reply.body = Bytes();
                 reply.problem = why;
                 close(slot, true);
@@ -317,6 +318,7 @@ struct HttpTransfer::Engine {
                 std::erase_if(under_way, [&](Batch* batch) {
                     if (batch->done < batch->requests.size()) return false;
                     finished.push_back(batch);
+                    in_flight -= batch->held;  // from here on they are the caller's
                     return ended = true;
                 });
                 more = !waiting.empty();

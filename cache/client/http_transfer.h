@@ -23,6 +23,7 @@ struct HttpOptions {
     std::string token;                        // empty: none; else sent as a bearer token
     std::string ca_file;                      // empty: the system's
     size_t connections = 16;
+    bool no_proxy = false;  // whatever the environment says
 };
 
 struct HttpRequest {

@@ -23,7 +23,8 @@ bool RemoteCache::may_ask(size_t requests, Doing doing) {
 bool RemoteCache::judge(const RemoteAnswer& answer, Doing doing) {
     using Kind = RemoteAnswer::Kind;
     if (answer.kind == Kind::found || answer.kind == Kind::absent) {
-        breaker_.succeeded();
+        // What was read has yet to prove right: a server that gives wrong bytes for ever would never be left alone otherwise.
+        if (answer.kind == Kind::absent || doing == Doing::writing) breaker_.succeeded();
         return answer.kind == Kind::found;
     }
     if (answer.kind == Kind::denied) {
@@ -60,6 +61,10 @@ std::optional<RemoteCache::Action> RemoteCache::read_action(const Digest& key, R
     if (value->frame) {
         action.record = std::move(*value->frame);
     } else {
+        if (value->frame_blob.size > limits_.record) {
+            corrupt(key, "a record of a size that none of kiln's has");
+            return std::nullopt;
+        }
         frame_blob = value->frame_blob;
     }
     action.blobs = std::move(value->blobs);
@@ -81,21 +86,35 @@ std::vector<std::optional<RemoteCache::Action>> RemoteCache::get_actions(std::sp
         elsewhere.push_back(i);
         frames.push_back(*frame);
     }
-    if (!frames.empty()) {
-        const std::vector<RemoteAnswer> got = remote_->get_blobs(frames);
-        for (size_t f = 0; f < frames.size(); ++f) {
-            std::optional<Action>& action = actions[elsewhere[f]];
-            if (judge(got[f], Doing::reading) && sha256(got[f].bytes) == frames[f].digest)
-                action->record = got[f].bytes;
-            else
-                action.reset();
+    uint64_t held = 0;
+    for (size_t f = 0; f < frames.size();) {
+        std::vector<RemoteBlob> group;
+        for (uint64_t bytes = 0; f + group.size() < frames.size(); group.push_back(frames[f + group.size()])) {
+            bytes += frames[f + group.size()].size;
+            if (!group.empty() && bytes > limits_.group) break;
         }
+        std::vector<RemoteAnswer> got;
+        if (held < limits_.held && (f == 0 || may_ask(group.size(), Doing::reading))) got = remote_->get_blobs(group);
+        for (size_t g = 0; g < group.size(); ++g) {
+            std::optional<Action>& action = actions[elsewhere[f + g]];
+            if (g < got.size() && judge(got[g], Doing::reading)) {
+                if (sha256(got[g].bytes) == group[g].digest) {
+                    held += got[g].bytes.size();
+                    action->record = std::move(got[g].bytes);
+                    continue;
+                }
+                corrupt(group[g].digest, "other bytes than those asked");
+            }
+            action.reset();
+        }
+        f += group.size();
     }
     for (size_t i = 0; i < keys.size(); ++i) {
         if (!actions[i]) continue;
         Bytes record;
         const FrameCheck check = read_frame(keys[i], actions[i]->record, verifier_.get(), record);
         actions[i]->record = std::move(record);
+        if (check != FrameCheck::damaged) breaker_.succeeded();
         if (check == FrameCheck::good) continue;
         actions[i].reset();
         if (check == FrameCheck::damaged) {
@@ -128,10 +147,12 @@ std::vector<std::optional<Bytes>> RemoteCache::get_blobs(std::span<const Digest>
     std::vector<RemoteAnswer> answers = remote_->get_blobs(asked);
     for (size_t i = 0; i < names.size(); ++i) {
         if (!judge(answers[i], Doing::reading)) continue;
-        if (sha256(answers[i].bytes) != names[i])
+        if (sha256(answers[i].bytes) != names[i]) {
             corrupt(names[i], "other bytes than those asked");
-        else
-            blobs[i] = std::move(answers[i].bytes);
+            continue;
+        }
+        breaker_.succeeded();
+        blobs[i] = std::move(answers[i].bytes);
     }
     const std::lock_guard lock(mutex_);
     for (const auto& blob : blobs) {

@@ -66,7 +66,7 @@ public:
 private:
     enum class Doing { reading, writing };
     bool may_ask(size_t requests, Doing doing);
-    // True for found. Counts everything but hits and misses.
+    // True for found. Counts everything but hits and misses. Of what was read, the breaker is told once it proves right.
     bool judge(const RemoteAnswer& answer, Doing doing);
     void corrupt(const Digest& key, const char* what);
     std::optional<Action> read_action(const Digest& key, RemoteAnswer& answer, std::optional<RemoteBlob>& frame_blob);

@@ -27,6 +27,7 @@ Result<std::unique_ptr<RemoteStore>> open_remote_store(const RemoteUrl& url, con
         http.timeout = options.timeout;
         http.token = options.token;
         http.ca_file = options.ca_file;
+        http.no_proxy = url.loopback();  // a token that may go there in clear text goes nowhere else
         return HttpRemote::open(url, http, options.limits);
     }
     GrpcRemoteOptions grpc;

@@ -59,6 +59,9 @@ public:
 // What a server may make a client hold.
 struct RemoteLimits {
     uint64_t action = uint64_t{1} << 20;
+    uint64_t record = uint64_t{16} << 20;  // a record that is too large for its action, and is a blob
+    uint64_t group = uint64_t{32} << 20;   // such records asked for at once, by the sizes told
+    uint64_t held = uint64_t{128} << 20;   // such records of one call; those past it are misses
     uint64_t blob = uint64_t{256} << 20;
     uint64_t unknown_blob = uint64_t{64} << 20;  // of a size that nobody told
 };

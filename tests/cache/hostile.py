@@ -7,6 +7,7 @@ import os
 import pathlib
 import socket
 import struct
+import subprocess
 import sys
 import threading
 import time
@@ -123,6 +124,21 @@ def memo_attack(*names):
     return on_get(lambda s, c, p, v: reply(c, 200, memo_of(p, [n() for n in names]) if "/ac/" in p else v))
 
 
+def large_records(size):
+    """Every record is elsewhere, in a blob of this size that nobody ever hashes to its name."""
+    named = set()
+
+    def attack(server, connection, method, path, body):
+        if method == "GET" and "/ac/" in path:
+            name = hashlib.sha256(path.encode()).hexdigest()
+            named.add(name)
+            return reply(connection, 200, field(2, field(1, b"record") + field(2, field(1, name.encode()) + b"\x10" + varint(size))))
+        if method == "GET" and path[-64:] in named:
+            return reply(connection, 200, bytes(size))
+        return honest(server, connection, method, path, body)
+    return attack
+
+
 bomb = zlib.compressobj(9, zlib.DEFLATED, 31)
 BOMB = bomb.compress(bytes(64 << 20)) + bomb.flush()
 
@@ -160,6 +176,8 @@ ATTACKS = {
     "an absolute path": on_get(lambda s, c, p, v: reply(c, 200, with_path(v, b"/etc/cron.d/x") if "/ac/" in p else v)),
     "a deep message": on_get(lambda s, c, p, v: reply(c, 200, b"\x12" * 100000 if "/ac/" in p else v)),
     "a huge action": on_get(lambda s, c, p, v: reply(c, 200, v + field(99, bytes(3 << 20)) if "/ac/" in p else v)),
+    "records of 15 MiB": large_records(15 << 20),
+    "records of 1 GiB": large_records(1 << 30),
     "a huge blob's name": on_get(lambda s, c, p, v: reply(
         c, 200, v.replace(b"\x10", b"\x10\xff\xff\xff\xff\xff\xff\xff\x3f", 1) if "/ac/" in p else v)),
     "a build of a device": memo_attack(lambda: b"/dev/zero"),
@@ -218,6 +236,15 @@ def main():
         for done in [pool.submit(attacked, i, name, kept, trap) for i, name in enumerate(ATTACKS)]:
             done.result()
     check(trap.seen == [], f"something was sent to another host: {trap.seen}")
+
+    # What goes to this machine in clear text is not shown to a proxy, as a proxy for all would have it.
+    server.kept, server.attack = dict(kept), None
+    for name in ("http_proxy", "all_proxy"):
+        direct = build("p/m.yaml", "t.kiln", "--cache", "none", "--cache", server.url, KILN_CACHE_TOKEN=TOKEN, **{name: trap.url})
+        check(direct.remote["hits"] > 2 and trap.seen == [], f"{name} was asked: {trap.seen} {direct.err}")
+        subprocess.run(["curl", "-s", "-o", "curl.out", server.url], env={**os.environ, name: trap.url}, timeout=20)
+        check(trap.seen != [], f"the control: curl did not ask {name}")
+        trap.seen.clear()
 
     # A token that may read only, and one that may do nothing.
     server.kept = dict(kept)

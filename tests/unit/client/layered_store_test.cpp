@@ -199,6 +199,75 @@ TEST(LayeredStore, WrongAnswersAreMissesAndCounted) {
     }
 }
 
+// Each answer arrives whole and in time, and none is what was asked for.
+TEST(LayeredStore, AServerThatOnlyLiesIsLeftAlone) {
+    const auto server = std::make_shared<FakeRemote::Shared>();
+    Machine one(server);
+    const auto asked_of = [&](Machine& machine, const std::string& prefix) {
+        const size_t before = server->calls.size();
+        for (int i = 0; i < 30; ++i) machine.get(Keyspace::blob, key_of(prefix + std::to_string(i)));
+        return server->calls.size() - before;
+    };
+    EXPECT_EQ(asked_of(one, "miss"), 30u);  // misses are no lies
+    server->meddle = [](const char*, const Digest&, RemoteAnswer& answer) {
+        answer = {Kind::found, bytes_of("something else"), {}, false};
+    };
+    EXPECT_EQ(asked_of(one, "lie"), Breaker::Rules().failures);
+    EXPECT_EQ(one.counters().corrupt, Breaker::Rules().failures);
+    EXPECT_GT(one.counters().not_asked, 0u);
+}
+
+// Records of 1 MiB, which are blobs of their own.
+struct LargeRecords {
+    std::shared_ptr<FakeRemote::Shared> server = std::make_shared<FakeRemote::Shared>();
+    std::vector<Digest> actions;
+
+    explicit LargeRecords(int count) {
+        Machine one(server);
+        for (int i = 0; i < count; ++i) {
+            actions.push_back(key_of("large " + std::to_string(i)));
+            EXPECT_TRUE(one.store->put_record(actions.back(), Bytes(1 << 20, static_cast<uint8_t>(i)), {}).ok());
+        }
+        one.store->finish();
+        EXPECT_EQ(server->blobs.size(), actions.size());
+    }
+    // The records that a client of these limits gets in one call, and its counters.
+    std::pair<size_t, RemoteCounters> read(const RemoteLimits& limits) const {
+        RemoteCache cache(std::make_unique<FakeRemote>(server), Breaker::Rules(), limits, nullptr, nullptr);
+        const auto got = cache.get_actions(actions);
+        return {static_cast<size_t>(std::count_if(got.begin(), got.end(), [](const auto& a) { return a.has_value(); })),
+                cache.counters()};
+    }
+};
+
+TEST(RemoteCache, HoldsNoMoreOfRecordsThanItsLimits) {
+    const LargeRecords large(12);
+    EXPECT_EQ(large.read(RemoteLimits()).first, 12u);
+
+    RemoteLimits few;
+    few.group = few.held = uint64_t{3} << 20;
+    const auto [got, counters] = large.read(few);
+    EXPECT_TRUE(got >= 2 && got <= 5) << got;
+    EXPECT_EQ(counters.hits, got);
+    EXPECT_EQ(counters.misses, 12 - got);
+    EXPECT_EQ(counters.corrupt, 0u);
+
+    RemoteLimits small;
+    small.record = 1 << 20;  // a frame has a head as well
+    const size_t before = large.server->calls.size();
+    EXPECT_EQ(large.read(small).first, 0u);
+    EXPECT_EQ(large.server->calls.size(), before + 1) << "blobs of such a size were asked for";
+}
+
+TEST(RemoteCache, AWrongRecordIsCorrupt) {
+    const LargeRecords large(4);
+    large.server->blobs.begin()->second.back() ^= 1;
+    const auto [got, counters] = large.read(RemoteLimits());
+    EXPECT_EQ(got, 3u);
+    EXPECT_EQ(counters.corrupt, 1u);
+    EXPECT_FALSE(counters.problem.empty());
+}
+
 TEST(LayeredStore, EveryFlippedBitOfAnActionIsAMissOrTheSame) {
     Machine one;
     const Entry entry("a");
