@@ -202,11 +202,13 @@ Resource block_map(const std::string& name, TexelFormat format, uint32_t width, 
     return image_of("uniform sampler2D " + name, std::move(image), sampler);
 }
 
-Resource volume_map(const std::string& name, TexelFormat format, uint32_t size, const std::vector<std::vector<float>>& mips) {
+Resource volume_map(const std::string& name, TexelFormat format, VolumeSize size, const std::vector<std::vector<float>>& mips) {
     ImageData image;
     image.dim = ImageDim::d3;
     image.format = format;
-    image.width = image.height = image.slices = size;
+    image.width = size.width;
+    image.height = size.height;
+    image.slices = size.depth;
     image.mips = static_cast<uint32_t>(mips.size());
     for (const std::vector<float>& mip : mips) {
         const Bytes bytes = encode_texels(format, mip);
@@ -216,6 +218,10 @@ Resource volume_map(const std::string& name, TexelFormat format, uint32_t size, 
     sampler.wrap = Wrap::clamp;
     sampler.mips = mips.size() > 1 ? MipFilter::linear : MipFilter::none;
     return image_of("uniform sampler3D " + name, std::move(image), sampler);
+}
+
+Resource volume_map(const std::string& name, TexelFormat format, uint32_t side, const std::vector<std::vector<float>>& mips) {
+    return volume_map(name, format, VolumeSize{side, side, side}, mips);
 }
 
 Resource depth_map(const std::string& name, uint32_t size, const std::vector<float>& depth, bool comparing, Filter filter) {
@@ -232,10 +238,11 @@ Resource depth_map(const std::string& name, uint32_t size, const std::vector<flo
     return image_of(std::string(comparing ? "uniform sampler2DShadow " : "uniform sampler2D ") + name, std::move(image), sampler);
 }
 
-Resource depth_array(const std::string& name, uint32_t size, uint32_t layers, const std::vector<float>& depth) {
+Resource depth_array(const std::string& name, uint32_t size, uint32_t layers, const std::vector<float>& depth, bool comparing) {
     ImageData image;
-    image.format = TexelFormat::d32_float;
-    image.depth = image.arrayed = true;
+    image.format = comparing ? TexelFormat::d32_float : TexelFormat::r32_float;
+    image.depth = comparing;
+    image.arrayed = true;
     image.width = image.height = size;
     image.layers = layers;
     image.texels = encode_texels(image.format, depth);
@@ -243,8 +250,9 @@ Resource depth_array(const std::string& name, uint32_t size, uint32_t layers, co
     sampler.filter = Filter::nearest;
     sampler.mips = MipFilter::none;
     sampler.wrap = Wrap::clamp;
-    sampler.compare = Comparison::less_or_equal;
-    return image_of("uniform sampler2DArrayShadow " + name, std::move(image), sampler);
+    sampler.compare = comparing ? Comparison::less_or_equal : Comparison::off;
+    return image_of(std::string(comparing ? "uniform sampler2DArrayShadow " : "uniform sampler2DArray ") + name, std::move(image),
+                    sampler);
 }
 
 Vec3d cube_direction(uint32_t face, double x, double y) {

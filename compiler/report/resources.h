@@ -27,10 +27,15 @@ Resource picture_map(const std::string& name, TexelFormat format, uint32_t width
 // One mip in a BC format, already encoded.
 Resource block_map(const std::string& name, TexelFormat format, uint32_t width, uint32_t height, Bytes blocks,
                    const SamplerState& sampler);
-Resource volume_map(const std::string& name, TexelFormat format, uint32_t size, const std::vector<std::vector<float>>& mips);
+struct VolumeSize {
+    uint32_t width = 0, height = 0, depth = 0;
+};
+Resource volume_map(const std::string& name, TexelFormat format, VolumeSize size, const std::vector<std::vector<float>>& mips);
+Resource volume_map(const std::string& name, TexelFormat format, uint32_t side, const std::vector<std::vector<float>>& mips);
 Resource depth_map(const std::string& name, uint32_t size, const std::vector<float>& depth, bool comparing, Filter filter);
-// Layers of a comparing map, one after the other; nearest.
-Resource depth_array(const std::string& name, uint32_t size, uint32_t layers, const std::vector<float>& depth);
+// Layers of a map, one after the other; nearest, comparing or its numbers alone.
+Resource depth_array(const std::string& name, uint32_t size, uint32_t layers, const std::vector<float>& depth,
+                     bool comparing = true);
 
 // Centre of a cube face's texel as a direction, not normalised. Faces +x -x +y -y +z -z, texels as Vulkan lays them.
 Vec3d cube_direction(uint32_t face, double x, double y);

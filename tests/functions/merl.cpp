@@ -1,6 +1,6 @@
 #include "uber/reference/merl.h"
 
-#include "tests/functions/function.h"
+#include "tests/functions/merl_tables.h"
 
 namespace kiln::test {
 namespace {
@@ -43,6 +43,29 @@ TEST(Functions, Merl) {
     merl.test(
         "merl_reflectance(stored)", [](auto stored) { return merl_reflectance(stored); },
         vector3("stored", either_sign(1e-3, 1e6)));
+
+    // Gold of roughness 0.3 in a texture: coordinates at random, on centres and on bins' edges.
+    static const MerlTable table(gold(0.3));
+    merl.texture("sampler3D table", table.image(), merl_sampler);
+    const auto coordinates = [](double last) { return linear(0, last).also({0.5, 1, 44.5, 45, last / 2, last - 0.5}); };
+    const auto texel = [](auto x) {
+        using T = decltype(x);
+        return [](int h, int d, int phi) { return table.read<T>(h, d, phi); };
+    };
+    merl.test(
+            "merl_lookup_nearest(table, vec3(x, y, z))",
+            [texel](auto x, auto y, auto z) {
+                return merl_lookup_nearest(texel(x), Vec3<decltype(x)>{x, y, z});
+            },
+            number("x", coordinates(90)), number("y", coordinates(90)), number("z", coordinates(179.999)))
+        .named("merl_lookup_nearest");
+    merl.test(
+            "merl_lookup(table, vec3(x, y, z))",
+            [texel](auto x, auto y, auto z) {
+                return merl_lookup(texel(x), Vec3<decltype(x)>{x, y, z});
+            },
+            number("x", coordinates(90)), number("y", coordinates(90)), number("z", coordinates(179.999)))
+        .named("merl_lookup");
     merl.run();
 }
 

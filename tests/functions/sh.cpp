@@ -141,6 +141,20 @@ TEST(Functions, ShEvaluation) {
         [](auto m0, auto m1, auto n) { return sh_irradiance_nonlinear_channel(m0, m1, n); },
         number("m0", logarithmic(1e-3, 1e3).also({0.0, -1.0})), vector3("m1", either_sign(1e-4, 1e3)), unit("n"));
     sh.test(
+        "sh_zh3_zonal(k, z)", [](auto k, auto z) { return sh_zh3_zonal(k, z); }, number("k", linear(0, 1)),
+        number("z", linear(-1, 1)));
+    sh.test(
+        "sh_irradiance_zh3_channel(m0, m1, n)", [](auto m0, auto m1, auto n) { return sh_irradiance_zh3_channel(m0, m1, n); },
+        number("m0", logarithmic(1e-3, 1e3).also({0.0, -1.0})), vector3("m1", either_sign(1e-4, 1e3)), unit("n"));
+    // Three channels whose moments all but cancel in luminance have an axis that rounding decides.
+    sh.test(
+          "result = sh_irradiance_zh3_luminance(ShMomentsL1(m0, m1[0], m1[1], m1[2]), n);",
+          [](auto m0, auto m1, auto n) {
+              return sh_irradiance_zh3_luminance(ShMomentsL1<decltype(n.x)>{m0, m1[0], m1[1], m1[2]}, n);
+          },
+          vector3("m0", logarithmic(1e-3, 1e3).also({0.0, -1.0})), array<3>(vector3("m1", either_sign(1e-2, 1e3))), unit("n"))
+        .named("sh_irradiance_zh3_luminance");
+    sh.test(
         "sh_irradiance_lecture(c, n)", [](auto c, auto n) { return sh_irradiance_lecture(c, n); }, vector4("c", coefficients),
         unit("n"));
     sh.run();

@@ -3,7 +3,8 @@
 // Where a pair of directions lies in a table of the MERL BRDF database (Matusik et al., "A Data-Driven Reflectance Model",
 // 2003): 90 x 90 x 180 bins over the half angle theta_h (by its square root), the difference angle theta_d (linear) and the
 // difference azimuth phi_d (linear, [0, pi) by reciprocity). One plane of bins a colour: red, green, blue.
-// The caller fetches, from whatever holds the table, and gives the three stored numbers to merl_reflectance.
+// A texture of the table goes to merl_lookup and its cheaper forms; who keeps the stored numbers themselves, in a buffer say,
+// fetches by merl_index and gives them to merl_reflectance.
 #include "math.glsl"
 
 const int merl_theta_h_bins = 90;
@@ -68,6 +69,45 @@ MerlCorners merl_corners(vec3 coordinates) {
 // give 0. stored: red, green, blue at one bin.
 vec3 merl_reflectance(vec3 stored) {
     return max(stored, vec3(0.0)) * (vec3(1.0, 1.15, 1.66) / 1500.0);
+}
+
+// The table as a 3D texture, of rgba32f or, where no value is above 65504, rgba16f (reference/merl_file.h makes it): columns
+// are phi_d, 182 of them, bins 179, 0, ... 179, 0, so that a filter goes on round the circle; rows theta_d, slices theta_h.
+// rgb: BRDF per steradian; a: 1, or 0 as all of the texel where nothing was measured. A look-up between bins is the sum of
+// rgb over the sum of a, so that bins without a value do not darken what lies beside them.
+vec4 merl_texel(sampler3D table, ivec3 bin) {
+    return texelFetch(table, ivec3(bin.z + 1, bin.y, bin.x), 0);
+}
+
+// sum: of weighted texels. 0 where none of them was measured, and up to a weight of 1e-6 in sum.
+vec3 merl_measured(vec4 sum) {
+    return sum.rgb / max(sum.a, 1e-6);
+}
+
+// BRDF per steradian of the bin that holds the coordinates: one fetch, and steps from bin to bin.
+vec3 merl_lookup_nearest(sampler3D table, vec3 coordinates) {
+    return merl_measured(merl_texel(table, merl_bin(coordinates)));
+}
+
+// BRDF per steradian between eight bins, with weights in full precision.
+vec3 merl_lookup(sampler3D table, vec3 coordinates) {
+    const MerlCorners m = merl_corners(coordinates);
+    vec4 plane[2];
+    for (int i = 0; i < 2; ++i) {
+        const int h = i == 0 ? m.low.x : m.high.x;
+        const vec4 low = mix(merl_texel(table, ivec3(h, m.low.y, m.low.z)), merl_texel(table, ivec3(h, m.low.y, m.high.z)),
+                             m.weight.z);
+        const vec4 high = mix(merl_texel(table, ivec3(h, m.high.y, m.low.z)), merl_texel(table, ivec3(h, m.high.y, m.high.z)),
+                              m.weight.z);
+        plane[i] = mix(low, high, m.weight.y);
+    }
+    return merl_measured(mix(plane[0], plane[1], m.weight.x));
+}
+
+// The same by one look-up. table: linear filter, clamped to its edge. Vulkan asks for no more than 4 bits of weights, and
+// devices have 8 (subTexelPrecisionBits): 1/256 of what neighbouring bins differ by.
+vec3 merl_lookup_filtered(sampler3D table, vec3 coordinates) {
+    return merl_measured(textureLod(table, (coordinates.zyx + vec3(1.0, 0.0, 0.0)) / vec3(182.0, 90.0, 90.0), 0.0));
 }
 
 #endif

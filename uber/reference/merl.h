@@ -65,6 +65,35 @@ Vec3<T> merl_reflectance(const Vec3<T>& stored) {
     return max(stored, splat3(T(0))) * Vec3<T>{T(1.0 / 1500), T(1.15 / 1500), T(1.66 / 1500)};
 }
 
+// rgb over a. 0 where nothing was measured.
+template <class T>
+Vec3<T> merl_measured(const Vec4<T>& sum) {
+    return sum.xyz() / max(sum.w, T(1e-6));
+}
+
+// table: (theta_h, theta_d, phi_d) -> Vec4<T>: BRDF and 1, or 0.
+template <class T, class Table>
+Vec3<T> merl_lookup_nearest(const Table& table, const Vec3<T>& c) {
+    const std::array<int, 3> bin = merl_bin({value(c.x), value(c.y), value(c.z)});
+    return merl_measured(table(bin[0], bin[1], bin[2]));
+}
+
+template <class T, class Table>
+Vec3<T> merl_lookup(const Table& table, const Vec3<T>& c) {
+    const MerlCorners m = merl_corners({value(c.x), value(c.y), value(c.z)});
+    // No decision that could be close: on a centre either pair of corners gives the same.
+    const auto weight = [](const T& x, double w) { return x - T(0.5) - T(std::round(value(x) - 0.5 - w)); };
+    const Vec3<T> w{weight(c.x, m.weight.x), weight(c.y, m.weight.y), weight(c.z, m.weight.z)};
+    const auto mixed = [](const Vec4<T>& a, const Vec4<T>& b, const T& t) {
+        return Vec4<T>{mix(a.x, b.x, t), mix(a.y, b.y, t), mix(a.z, b.z, t), mix(a.w, b.w, t)};
+    };
+    const auto plane = [&](int h) {
+        return mixed(mixed(table(h, m.low[1], m.low[2]), table(h, m.low[1], m.high[2]), w.z),
+                     mixed(table(h, m.high[1], m.low[2]), table(h, m.high[1], m.high[2]), w.z), w.y);
+    };
+    return merl_measured(mixed(plane(m.low[0]), plane(m.high[0]), w.x));
+}
+
 // Light and view of given coordinates, for filling a table: n is the z axis, h in the plane of x and z.
 struct MerlDirections {
     Vec3<double> l, v, h;

@@ -199,6 +199,50 @@ Vec3<T> sh_irradiance_nonlinear(const ShMomentsL1<T>& m, const Vec3<T>& n) {
             sh_irradiance_nonlinear_channel(m.m0.z, Vec3<T>{m.m1_x.z, m.m1_y.z, m.m1_z.z}, n)};
 }
 
+// Roughton et al. 2024: the irradiance of the third band that two orthonormal bands let one guess about an axis.
+// c0: orthonormal; along: c1 . axis, of either sign; z: n . axis.
+template <class T>
+T sh_zh3_band(const T& c0, const T& along, const T& z) {
+    const T ratio = min(abs(along) / c0, T(std::sqrt(3.0)));
+    const T c2 = c0 * (T(0.08) * ratio + T(0.6) * ratio * ratio);
+    return T(sh_cosine_eigenvalue(2)) * c2 * T(std::sqrt(5.0 / (16.0 * pi))) * (T(3) * z * z - T(1));
+}
+template <class T>
+T sh_zh3_zonal(const T& k, const T& z) {
+    return sh_zh3_band(T(std::sqrt(1.0 / (4.0 * pi))), k * T(std::sqrt(3.0 / (4.0 * pi))), z);
+}
+template <class T>
+T sh_irradiance_zh3_channel(const T& m0, const Vec3<T>& m1, const Vec3<T>& n) {
+    const T power = max(m0, T(0)), size = length(m1);
+    if (value(power) == 0.0) return T(0);
+    if (value(size) == 0.0) return power * T(0.25);
+    const T k = min(size / power, T(1)), z = clamp(dot(m1, n) / size, T(-1), T(1));
+    return power * (T(0.25) + T(0.5) * k * z + sh_zh3_zonal(k, z));
+}
+template <class T>
+Vec3<T> sh_irradiance_zh3(const ShMomentsL1<T>& m, const Vec3<T>& n) {
+    return {sh_irradiance_zh3_channel(m.m0.x, Vec3<T>{m.m1_x.x, m.m1_y.x, m.m1_z.x}, n),
+            sh_irradiance_zh3_channel(m.m0.y, Vec3<T>{m.m1_x.y, m.m1_y.y, m.m1_z.y}, n),
+            sh_irradiance_zh3_channel(m.m0.z, Vec3<T>{m.m1_x.z, m.m1_y.z, m.m1_z.z}, n)};
+}
+template <class T>
+Vec3<T> sh_irradiance_zh3_luminance(const ShMomentsL1<T>& m, const Vec3<T>& n) {
+    const Vec3<T> luminance{T(0.2126), T(0.7152), T(0.0722)};
+    const Vec3<T> sum{dot(m.m1_x, luminance), dot(m.m1_y, luminance), dot(m.m1_z, luminance)};
+    const Vec3<T> two = sh_irradiance_from_moments(m, n);
+    const T size = length(sum);
+    if (value(size) == 0.0) return two;
+    const Vec3<T> axis = sum / size;
+    const T z = dot(axis, n);
+    const auto band = [&](const T& m0, const Vec3<T>& m1) {
+        const T power = max(m0, T(0));
+        if (value(power) == 0.0) return T(0);
+        return power * sh_zh3_zonal(min(abs(dot(m1, axis)) / power, T(1)), z);
+    };
+    return two + Vec3<T>{band(m.m0.x, Vec3<T>{m.m1_x.x, m.m1_y.x, m.m1_z.x}), band(m.m0.y, Vec3<T>{m.m1_x.y, m.m1_y.y, m.m1_z.y}),
+                         band(m.m0.z, Vec3<T>{m.m1_x.z, m.m1_y.z, m.m1_z.z})};
+}
+
 // The slides in order, six digits as printed. c: 1, y, z, x.
 template <class T>
 T sh_irradiance_lecture(const Vec4<T>& c, const Vec3<T>& n) {

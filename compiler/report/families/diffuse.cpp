@@ -229,6 +229,12 @@ Family diffuse_family(bool quick) {
               l1 + "vec3 shade(Point p) { return sh_irradiance_clamped(sh_moments_of(l1()), p.n); }");
     harmonics("sh_l1_nonlinear", "two bands, Hazel's non-linear form", 4,
               l1 + "vec3 shade(Point p) { return sh_irradiance_nonlinear(sh_moments_of(l1()), p.n); }");
+    harmonics("sh_zh3", "two bands and a third guessed about each channel's axis: ZH3, 2024", 4,
+              l1 + "vec3 shade(Point p) { return sh_irradiance_zh3(sh_moments_of(l1()), p.n); }");
+    harmonics("sh_zh3_clamped", "the same, not below 0", 4,
+              l1 + "vec3 shade(Point p) { return max(sh_irradiance_zh3(sh_moments_of(l1()), p.n), vec3(0.0)); }");
+    harmonics("sh_zh3_luminance", "the same about one axis, that of the luminance", 4,
+              l1 + "vec3 shade(Point p) { return sh_irradiance_zh3_luminance(sh_moments_of(l1()), p.n); }");
     harmonics("sh_l2", "three bands", 9, l2 + "vec3 shade(Point p) { return sh_irradiance_from_radiance(l2(), p.n); }");
     harmonics("sh_l2_clamped", "three bands, not below 0", 9,
               l2 + "vec3 shade(Point p) { return sh_irradiance_clamped(l2(), p.n); }");
@@ -310,8 +316,18 @@ Family diffuse_family(bool quick) {
         for (Expectation& e : ascending(Metric::relmse, {"sh_l2", "sh_l1", "ambient"}, s)) f.expectations.push_back(std::move(e));
     for (const char* s : {"cap_5", "sky_and_sun"})
         f.expectations.push_back({Metric::relmse, Relation::below, "cube_64", "sh_l2", 1.0, s, ""});
+    for (const char* s : {"cap_5", "cap_30", "cap_60", "sky_and_sun"}) {
+        for (Expectation& e : ascending(Metric::relmse, {"sh_l2", "sh_zh3", "sh_l1"}, s)) f.expectations.push_back(std::move(e));
+        f.expectations.push_back({Metric::relmse, Relation::below, "sh_zh3", "sh_l1_nonlinear", 1.0, s, "as the paper finds"});
+    }
+    f.expectations.push_back({Metric::relmse, Relation::below, "sh_l1", "sh_zh3", 1.0, "linear_sky",
+                              "two bands are all there is; a third is made up"});
+    f.expectations.push_back(
+        {Metric::relmse, Relation::near, "sh_zh3_luminance", "sh_zh3", 1.01, "checker", "light of one colour has one axis"});
+    for (Expectation& e : ascending(Metric::time, {"sh_l1", "sh_zh3_luminance", "sh_zh3", "sh_l1_nonlinear"}))
+        f.expectations.push_back(std::move(e));
     for (const char* m :
-         {"ambient", "sh_l1", "sh_l1_clamped", "sh_l1_nonlinear", "sh_l2", "cube_16", "cube_64", "mc_1", "mc_64_mis"})
+         {"ambient", "sh_l1", "sh_l1_clamped", "sh_l1_nonlinear", "sh_zh3", "sh_l2", "cube_16", "cube_64", "mc_1", "mc_64_mis"})
         f.expectations.push_back(
             {Metric::max_rel, Relation::at_most, m, "", 1e-3, "furnace", "every method is right in a furnace"});
     f.expectations.push_back(

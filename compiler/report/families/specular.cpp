@@ -1,7 +1,7 @@
 // The specular lobe under one light: forms from Blinn's to a measured table, against GGX with height-correlated Smith.
 #include "compiler/report/families/families.h"
 #include "compiler/report/resources.h"
-#include "uber/reference/merl.h"
+#include "uber/reference/merl_file.h"
 #include "uber/reference/split_sum_quadrature.h"
 
 namespace kiln::report {
@@ -172,30 +172,32 @@ Family specular_family(bool quick) {
         sampler.mips = MipFilter::none;
         return std::vector<Resource>{picture_map("table", TexelFormat::rg32_float, 32, 32, {texels}, sampler)};
     };
-    Member& table = add(
-        "merl_table", "GGX tabulated as the MERL database does, eight bins interpolated; green from one plane",
-        "#include \"merl.glsl\"\n#include \"fresnel.glsl\"\n#include \"vectors.glsl\"\n" + open +
-            "    const vec3 h = safe_normalize(v + l, n);\n    const MerlCorners m = merl_corners(merl_coordinates(n, l, h));\n"
-            "    float sum = 0.0;\n    for (int i = 0; i < 8; ++i) {\n"
-            "        const bvec3 high = bvec3((i & 1) != 0, (i & 2) != 0, (i & 4) != 0);\n"
-            "        const vec3 w = mix(vec3(1.0) - m.weight, m.weight, high);\n"
-            "        sum += w.x * w.y * w.z * bins[merl_index(ivec3(high.x ? m.high.x : m.low.x, high.y ? m.high.y : m.low.y, "
-            "high.z ? m.high.z : m.low.z))];\n"
-            "    }\n    return sum * fresnel_schlick(dot(v, h), f0) * saturate(dot(n, l));\n}\n");
-    table.resources = [settings](size_t scene, Bench&, const Effort& effort) -> Result<std::vector<Resource>> {
-        std::vector<float> bins(reference::merl_plane);
+    // GGX itself as a file of the MERL database would have it, in full: three colours, Fresnel included, -1 below the horizon.
+    const auto measured = [settings](size_t scene, TexelFormat format) -> Resource {
         const double roughness = settings[scene].roughness;
-        effort.jobs.each(90, [&](size_t th) {
-            for (int td = 0; td < 90; ++td)
-                for (int pd = 0; pd < 180; ++pd) {
-                    const auto d = reference::merl_directions({static_cast<double>(th) + 0.5, td + 0.5, pd + 0.5});
-                    const double value =
-                        d.l.z > 1e-3 && d.v.z > 1e-3 ? lobe(d.v, d.l, roughness, reference::splat3(1.0)).x / d.l.z : 0.0;
-                    bins[static_cast<size_t>(reference::merl_index({static_cast<int>(th), td, pd}))] = static_cast<float>(value);
-                }
-        });
-        return std::vector<Resource>{storage_buffer("readonly buffer Bins { float bins[]; }", bins)};
+        const Vec3d f0 = settings[scene].view == 0.0 ? reference::splat3(1.0) : gold;
+        const reference::MerlFile file =
+            reference::parse_merl(settings[scene].name, reference::merl_bytes([&](const Vec3d& l, const Vec3d& v) {
+                                      return l.z > 1e-3 && v.z > 1e-3 ? lobe(v, l, roughness, f0) / l.z : Vec3d{};
+                                  }));
+        return volume_map("table", format, {reference::merl_columns, reference::merl_rows, reference::merl_slices},
+                          {reference::merl_texels(file)});
     };
+    const auto table = [&](const std::string& name, const std::string& what, const std::string& look_up, TexelFormat format) {
+        add(name, what,
+            "#include \"merl.glsl\"\n#include \"vectors.glsl\"\n" + open +
+                "    const vec3 h = safe_normalize(v + l, n);\n    return " + look_up +
+                "(table, merl_coordinates(n, l, h)) * saturate(dot(n, l));\n}\n")
+            .resources = [measured, format](size_t scene, Bench&, const Effort&) -> Result<std::vector<Resource>> {
+            return std::vector<Resource>{measured(scene, format)};
+        };
+    };
+    table("merl_table", "GGX in a MERL file, eight bins fetched and interpolated, 32-bit floats", "merl_lookup",
+          TexelFormat::rgba32_float);
+    table("merl_filtered", "the same by one filtered look-up", "merl_lookup_filtered", TexelFormat::rgba32_float);
+    table("merl_filtered_half", "the same in 16-bit floats", "merl_lookup_filtered", TexelFormat::rgba16_float);
+    table("merl_nearest", "the bin that holds the directions, as the database's own reader", "merl_lookup_nearest",
+          TexelFormat::rgba32_float);
 
     for (const char* s : {"smooth", "glossy"})
         for (Expectation& e : ascending(Metric::max_rel, {"ggx_correlated", "ggx_karis", "ggx_lecture"}, s))
@@ -212,6 +214,15 @@ Family specular_family(bool quick) {
     f.expectations.push_back({Metric::max_abs, Relation::below, "ggx_multiscatter", "ggx_correlated", 1.0, "furnace", ""});
     for (Expectation& e : ascending(Metric::time, {"blinn_phong_raw", "blinn_phong"}, "glossy")) f.expectations.push_back(e);
     for (Expectation& e : ascending(Metric::time, {"ggx_karis", "ggx_correlated", "ggx_multiscatter", "merl_table"}, "glossy"))
+        f.expectations.push_back(e);
+    for (const char* s : {"smooth", "glossy", "rough"}) {
+        f.expectations.push_back({Metric::relmse, Relation::below, "merl_table", "merl_nearest", 4.0, s, "a chord for a step"});
+        f.expectations.push_back(
+            {Metric::relmse, Relation::near, "merl_filtered", "merl_table", 1.1, s, "filter weights of 8 bits are fine enough"});
+        f.expectations.push_back(
+            {Metric::relmse, Relation::near, "merl_filtered_half", "merl_filtered", 1.1, s, "and so are 11 bits of a value"});
+    }
+    for (Expectation& e : ascending(Metric::time, {"merl_nearest", "merl_filtered", "merl_table"}, "glossy"))
         f.expectations.push_back(e);
     f.timed_scene = 1;
     return f;

@@ -98,6 +98,44 @@ TEST(Sh, DeltaLightHasTheKnownErrors) {
     EXPECT_NEAR(hazel.rms, std::sqrt(1.0 / 7.0 - 49.0 / 160.0 + 1.0 / 6.0), 1e-8);
     EXPECT_NEAR(sh_irradiance_nonlinear(m, up).x, 1.0, 1e-12);
     EXPECT_GE(hazel.least, 0.0);
+    // k = 1: 1/4 + c/2 + s (3 c^2 - 1), s = sqrt(5)/32 (0.08 sqrt(3) + 1.8); least at c = -1/(12 s), and 1.02 facing the light.
+    const double s = std::sqrt(5.0) / 32.0 * (0.08 * std::sqrt(3.0) + 1.8);
+    const Errors zh3 = against_delta([&](double c) { return sh_irradiance_zh3(m, at(c)).x; });
+    EXPECT_NEAR(zh3.rms, 0.040592, 1e-5);
+    EXPECT_NEAR(zh3.least, 0.25 - s - 1.0 / (48.0 * s), 1e-8);
+    EXPECT_NEAR(sh_irradiance_zh3(m, up).x, 0.75 + 2.0 * s, 1e-12);
+    const Errors shared = against_delta([&](double c) { return sh_irradiance_zh3_luminance(m, at(c)).y; });
+    EXPECT_NEAR(shared.rms, zh3.rms, 1e-12);
+}
+
+// The guessed band is band 2 of the light's own axis: what three bands of a light with these c0, c1 and c2 have.
+TEST(Sh, Zh3IsABandAboutTheAxis) {
+    const ShL1<double> two{{splat3(0.7), splat3(0.3 * tilted.y), splat3(0.3 * tilted.z), splat3(0.3 * tilted.x)}};
+    const double r = 0.3 / 0.7, c2 = 0.7 * (0.08 * r + 0.6 * r * r);
+    const std::array<double, 9> y = sh_l2_basis(tilted);
+    ShL2<double> three;
+    for (size_t i = 0; i < 4; ++i) three.c[i] = two.c[i];
+    // Coefficients of a zonal band about an axis are sqrt(4 pi / 5) times the basis there.
+    for (size_t i = 4; i < 9; ++i) three.c[i] = splat3(c2 * std::sqrt(4.0 * pi / 5.0) * y[i]);
+    for (const V& n : {up, tilted, normalize(V{-1, 2, 0.1}), V{1, 0, 0}})
+        EXPECT_NEAR(sh_irradiance_zh3(sh_moments_of(two), n).x, sh_irradiance_from_radiance(three, n).x, 1e-14);
+}
+
+// A red lamp overhead and a blue one from the side: each has an axis of its own, and the luminance's is neither.
+TEST(Sh, Zh3OfTwoColoursNeedsTwoAxes) {
+    const V aside{1.0, 0.0, 0.0}, red{1.0, 0.0, 0.0}, blue{0.0, 0.0, 1.0};
+    const ShMomentsL1<double> m =
+        sh_moments_accumulate(sh_moments_accumulate(ShMomentsL1<double>{}, up, red, 1.0), aside, blue, 1.0);
+    double own = 0, shared = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const double c = -1.0 + 2.0 * (i + 0.5) / 4000, s = std::sqrt(1 - c * c), phi = 2.399963 * i;
+        const V n{s * std::cos(phi), s * std::sin(phi), c}, truth = red * std::max(c, 0.0) + blue * std::max(n.x, 0.0);
+        const V a = sh_irradiance_zh3(m, n) - truth, b = sh_irradiance_zh3_luminance(m, n) - truth;
+        own += dot(a, a) / 4000, shared += dot(b, b) / 4000;
+    }
+    std::printf("zh3 of two colours: RMSE %.4f about own axes, %.4f about the luminance's\n", std::sqrt(own), std::sqrt(shared));
+    EXPECT_NEAR(std::sqrt(own), std::sqrt(2.0) * 0.040592, 1e-3);
+    EXPECT_GT(shared, 2 * own);
 }
 
 // All valid pairings of what the bake stores and what shading multiplies by, and the two that are not.
