@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes renderer/expected.json and renderer_*/expected.json: what `kiln count` must say of manifests/renderer.yaml and of its
-scenes: declared, legal and needed variants by listing (oracle.py), classes by preprocessing every listed variant (preprocess.py),
-some of them by glslc as well. Needs PyYAML. With --check it writes nothing and tells what
-differs from the files (exit code 4).
+"""Writes renderer/expected.json, renderer_*/expected.json and library/expected.json: what `kiln count` must say of
+manifests/renderer.yaml, of its scenes and of manifests/library.yaml: declared, legal and needed variants by listing (oracle.py),
+classes by preprocessing every listed variant (preprocess.py), some of them by glslc as well. Needs PyYAML. With --check it writes
+nothing and tells what differs from the files (exit code 4).
 """
 import hashlib
 import json
@@ -88,12 +88,10 @@ def write(folder, document):
     return same
 
 
-def main():
-    manifest = yaml.safe_load((ROOT / "manifests/renderer.yaml").read_text())
-    scenes = {p.stem: yaml.safe_load(p.read_text()) for p in sorted((ROOT / "manifests/scenes").glob("renderer_*.yaml"))}
-    files = {str(p.relative_to(ROOT / "uber")): p.read_text() for pattern in ("*.glsl", "*.vert", "*.frag", "*.comp", "lib/*.glsl")
-             for p in (ROOT / "uber").glob(pattern)}
-    preprocessor = Preprocessor(files)
+def golden(of, preprocessor, files):
+    """Whether the files of a manifest and its scenes say so already."""
+    manifest = yaml.safe_load((ROOT / f"manifests/{of}.yaml").read_text())
+    scenes = {p.stem: yaml.safe_load(p.read_text()) for p in sorted((ROOT / "manifests/scenes").glob(of + "_*.yaml"))}
     shaders, in_scene = [], {name: [] for name in scenes}
     for shader in manifest["shaders"]:
         axes = {n: manifest["axes"][n] for n in manifest["axes"] if n in shader["axes"]}
@@ -118,10 +116,18 @@ def main():
         sums["classes"] = str(sum(int(t["classes"]) for s in entries for t in s.get("stages", [])))
         return sums
 
-    same = write(HERE / "renderer", {"manifest": "../../../manifests/renderer.yaml", "shaders": shaders, "total": total(shaders)})
+    same = write(HERE / of, {"manifest": f"../../../manifests/{of}.yaml", "shaders": shaders, "total": total(shaders)})
     for name, entries in in_scene.items():
-        same &= write(HERE / name, {"manifest": "../../../manifests/renderer.yaml", "scenes": [f"../../../manifests/scenes/{name}.yaml"],
+        same &= write(HERE / name, {"manifest": f"../../../manifests/{of}.yaml", "scenes": [f"../../../manifests/scenes/{name}.yaml"],
                                     "shaders": entries, "total": total(entries)})
+    return same
+
+
+def main():
+    files = {str(p.relative_to(ROOT / "uber")): p.read_text() for pattern in ("*.glsl", "*.vert", "*.frag", "*.comp", "lib/*.glsl")
+             for p in (ROOT / "uber").glob(pattern)}
+    preprocessor = Preprocessor(files)
+    same = all([golden(of, preprocessor, files) for of in ("renderer", "library")])
     print(f"{with_glslc} texts preprocessed by glslc as well")
     return 4 if "--check" in sys.argv and not same else 0
 

@@ -162,6 +162,18 @@ std::vector<Values> pairwise(const std::string& manifest, const std::string& sha
     return out;
 }
 
+std::vector<Values> legal(const std::string& manifest, const std::string& shader) {
+    const auto [from, space] = find_shader(manifest, shader);
+    std::vector<Values> out;
+    if (from == nullptr) return out;
+    for (uint64_t rank = 0;; ++rank) {
+        const std::optional<Digits> one = space->diagram->unrank(space->legal, Count(rank));
+        if (!one) return out;
+        Values& values = out.emplace_back();
+        for (size_t x = 0; x < one->size(); ++x) values[space->axes[x].name] = space->axes[x].values[(*one)[x]].name;
+    }
+}
+
 SurfaceAxes axes_of(const Values& values) {
     SurfaceAxes a;
     const auto yes = [&](const char* axis) { return place_of(values, axis, {"false", "true"}) == 1; };

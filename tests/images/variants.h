@@ -33,6 +33,9 @@ inline Variant surface_variant(const Values& values, const Edits& edits = {}) {
 // random from all legal ones with a pair that the others lack, by `seed`.
 std::vector<Values> pairwise(const std::string& manifest, const std::string& shader, uint64_t seed);
 
+// All of them; for shaders with few.
+std::vector<Values> legal(const std::string& manifest, const std::string& shader);
+
 reference::SurfaceAxes axes_of(const Values& values);
 
 // Draws one pipeline, once for each of the inputs. A message of the validation layer fails the test; what comes back has
