@@ -16,7 +16,7 @@ struct ServerFacts {
     Counts counts;
     std::vector<std::pair<std::string, Counts>> instances;
     std::vector<Event> events;  // latest first
-    uint64_t in_flight = 0, hashed = 0;
+    uint64_t in_flight = 0, answering = 0, hashed = 0;
     HttpStats http;
 };
 

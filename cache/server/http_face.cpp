@@ -11,6 +11,7 @@ namespace kiln {
 
 namespace {
 
+constexpr uint64_t lease_least = 32 * 1024;
 constexpr uint64_t pack_least = 512, pack_most = uint64_t{4} << 20;  // worth compressing; small enough to do in memory
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
@@ -147,9 +148,13 @@ std::optional<HttpResponse> HttpFace::plan(const HttpHead& head, HttpWork& work)
     using What = Target::What;
     const bool store = target->what == What::action || target->what == What::blob || target->what == What::dav;
     const bool dav = target->what == What::dav;
-    if (work.method == Method::options && dav) return std::nullopt;
+    const bool options = work.method == Method::options && dav;
+    if (!store && work.method != Method::get && work.method != Method::head) return not_allowed("GET, HEAD");
+    // Neither takes a body, and nobody has been asked for a token yet.
+    if ((!store || options) && head.length && *head.length > work.most)
+        return refused(service_.refuse("", work.caller, Refusal::too_large, "this takes no body"));
+    if (options) return std::nullopt;
     if (!store) {
-        if (work.method != Method::get && work.method != Method::head) return not_allowed("GET, HEAD");
         work.blocks = target->what != What::health && target->what != What::root;
         return std::nullopt;
     }
@@ -208,6 +213,17 @@ HttpResponse HttpFace::bytes(const HttpWork& work, Answer<std::optional<Bytes>> 
         response.body = zstd_compress(response.body, 1);
         response.fields = "Content-Encoding: zstd\r\nVary: Accept-Encoding\r\n";
     }
+    return leased(work, std::move(response));
+}
+
+// A client that reads slowly keeps what it reads in memory. What the kernel's buffers take at once is not worth the counting.
+HttpResponse HttpFace::leased(const HttpWork& work, HttpResponse response) {
+    const uint64_t held = response.file ? response.file->memory().size() : response.body.size();
+    if (held <= lease_least || work.method == Method::head) return response;
+    auto lease = service_.lease_response(held);
+    if (!lease.ok())
+        return refused(service_.refuse(work.target.instance, work.caller, lease.refused().why, lease.refused().message));
+    response.lease = std::move(*lease);
     return response;
 }
 
@@ -230,7 +246,7 @@ std::optional<HttpResponse> HttpFace::get(const HttpWork& work) {
     }
     HttpResponse response;
     response.file = std::move(**found);
-    return response;
+    return leased(work, std::move(response));
 }
 
 HttpResponse HttpFace::put(const HttpWork& work, ByteView body) {

@@ -37,6 +37,7 @@ struct HttpResponse {
     const char* type = "application/octet-stream";
     Bytes body;
     std::optional<BlobFile> file;  // instead of a body
+    Service::Lease lease;          // of what of it is in memory
     uint64_t length() const { return file ? file->size() : body.size(); }
 };
 
@@ -77,6 +78,7 @@ private:
     HttpResponse propfind(const HttpWork& work);
     HttpResponse page(const HttpWork& work);
     HttpResponse bytes(const HttpWork& work, Answer<std::optional<Bytes>> found);
+    HttpResponse leased(const HttpWork& work, HttpResponse response);
 
     Service& service_;
     std::function<std::shared_ptr<const Access>()> access_;

@@ -1,5 +1,6 @@
 // kiln-cached: opens the store, starts the fronts, then waits for signals. SIGTERM and SIGINT drain, SIGHUP reads tokens and
 // certificates again.
+#include <malloc.h>
 #include <signal.h>
 #include <unistd.h>
 
@@ -204,6 +205,7 @@ int serve(const Config& config) {
         f.instances = service.counters().by_instance();
         f.events = service.counters().recent();
         f.in_flight = service.in_flight();
+        f.answering = service.answering();
         f.hashed = service.hashed();
         if (http_now != nullptr) f.http = http_now->stats();
         return f;
@@ -279,6 +281,8 @@ int main(int argc, char** argv) {
         const auto access = load_access(*config);
         return access.ok() ? 0 : fail(access.error());
     }
+    // Large bodies go back to the system when they are done with: left alone, malloc keeps blocks of up to 32 MiB for each arena.
+    ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
     // Blocked in every thread, and taken by the main one; a client that goes away must not end the server.
     sigset_t blocked;
     sigemptyset(&blocked);

@@ -83,6 +83,7 @@ std::string metrics_page(const ServerFacts& facts) {
     f.add(facts.disk.quarantine.entries, {{"keyspace", "quarantine"}});
     f.one("disk_limit_bytes", "The bound of the store.", gauge, facts.limit);
     f.one("bodies_in_flight_bytes", "Memory held for request bodies.", gauge, facts.in_flight);
+    f.one("responses_in_flight_bytes", "Memory held for responses over 32 KiB.", gauge, facts.answering);
     f.one("http_connections", "Open HTTP connections.", gauge, facts.http.open);
     f.one("http_connections_total", "HTTP connections accepted.", counter, facts.http.accepted);
     f.one("http_connections_refused_total", "HTTP connections over the cap.", counter, facts.http.over_cap);

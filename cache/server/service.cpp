@@ -265,14 +265,14 @@ Answer<Written> Service::put_file(const Caller& caller, std::string_view name, s
     return store_action(caller, *instance, own, bytes, *there, true);
 }
 
-Answer<Service::Lease> Service::lease(uint64_t bytes) {
+Answer<Service::Lease> Service::lease(uint64_t bytes, std::atomic<uint64_t>& of) {
     if (bytes > limits_.in_flight) return Refused{Refusal::too_large, "the body is larger than the server takes"};
-    uint64_t held = in_flight_.load();
+    uint64_t held = of.load();
     do {
         if (held + bytes > limits_.in_flight) return Refused{Refusal::busy, "too many bodies in flight"};
-    } while (!in_flight_.compare_exchange_weak(held, held + bytes));
+    } while (!of.compare_exchange_weak(held, held + bytes));
     Lease lease;
-    lease.service_ = this;
+    lease.held_ = &of;
     lease.bytes_ = bytes;
     return lease;
 }

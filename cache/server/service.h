@@ -40,7 +40,7 @@ struct ServiceLimits {
     uint64_t blob = uint64_t{256} << 20;          // bytes of one blob
     uint64_t action = uint64_t{4} << 20;          // bytes of one action record
     uint64_t opaque_action = uint64_t{64} << 20;  // of an instance whose actions are opaque
-    uint64_t in_flight = uint64_t{512} << 20;     // bytes of request bodies held at once
+    uint64_t in_flight = uint64_t{512} << 20;     // bytes of request bodies held at once, and as many of responses
 };
 
 enum class Written {
@@ -98,28 +98,31 @@ public:
     Answer<std::optional<Bytes>> file(const Caller& caller, std::string_view instance, std::string_view path);
     Answer<Written> put_file(const Caller& caller, std::string_view instance, std::string_view path, ByteView bytes);
 
-    // A share of the memory for request bodies, given back when it is destroyed.
+    // A share of the memory for bodies, given back when it is destroyed.
     class Lease {
     public:
         Lease() = default;
-        Lease(Lease&& other) noexcept : service_(std::exchange(other.service_, nullptr)), bytes_(other.bytes_) {}
+        Lease(Lease&& other) noexcept : held_(std::exchange(other.held_, nullptr)), bytes_(other.bytes_) {}
         Lease& operator=(Lease&& other) noexcept {
-            std::swap(service_, other.service_);
+            std::swap(held_, other.held_);
             std::swap(bytes_, other.bytes_);
             return *this;
         }
         ~Lease() {
-            if (service_ != nullptr) service_->in_flight_ -= bytes_;
+            if (held_ != nullptr) *held_ -= bytes_;
         }
 
     private:
         friend class Service;
-        Service* service_ = nullptr;
+        std::atomic<uint64_t>* held_ = nullptr;
         uint64_t bytes_ = 0;
     };
     // `busy` when there is no room for so much at present, `too_large` when there never is.
-    Answer<Lease> lease(uint64_t bytes);
+    Answer<Lease> lease(uint64_t bytes) { return lease(bytes, in_flight_); }
+    // The same for a response, whose reader may be slow: out of a share of its own, so that readers do not keep writers out.
+    Answer<Lease> lease_response(uint64_t bytes) { return lease(bytes, answering_); }
     uint64_t in_flight() const { return in_flight_; }
+    uint64_t answering() const { return answering_; }
     uint64_t hashed() const { return reader_of_blobs_.hashed(); }
 
     // A refusal that a front made by itself (a malformed request, a failed TLS handshake), counted with the others.
@@ -130,6 +133,7 @@ private:
         std::optional<Bytes> bytes;
         bool incomplete = false;
     };
+    Answer<Lease> lease(uint64_t bytes, std::atomic<uint64_t>& of);
     Refused failure(const Instance& instance, const Caller& caller, const Error& error);
     Result<Found> own_action(const Instance& instance, const std::string& name, const Digest& key);
     Result<bool> complete(ByteView action);
@@ -143,7 +147,7 @@ private:
     const ActionReader reader_;
     BlobReader reader_of_blobs_;
     Counters counters_;
-    std::atomic<uint64_t> in_flight_{0};
+    std::atomic<uint64_t> in_flight_{0}, answering_{0};
     std::array<std::mutex, 64> stripes_;  // one writer of an action at a time: the first is the first
 };
 

@@ -100,6 +100,59 @@ def announced_memory(binary):
             s.close()
 
 
+def unwanted_bodies(binary):
+    """What takes no body takes none, from anybody: it is refused at its head, by length or by chunks, and costs no memory."""
+    token = "writers-token-of-this-test"
+    lines = ("GET /healthz", "HEAD /healthz", "GET /", "GET /status", "GET /metrics", "OPTIONS /main/dav/", "GET /main/cas/" + key(BLOB), "MKCOL /main/dav/a/")
+    with Cached(binary, instances=["name: main"], tokens=[f"ci {token} main:read,cas-write,ac-write"]) as server:
+        for line in lines:
+            for bearer in ("", f"Authorization: Bearer {token}\r\n"):
+                before = server.memory()
+                for field, first in (("Content-Length: 300000000", b"x"), ("Transfer-Encoding: chunked", b"fffffff\r\n")):
+                    s = server.connect(20)
+                    s.sendall(f"{line} HTTP/1.1\r\nHost: h\r\n{bearer}{field}\r\n\r\n".encode() + first)
+                    try:
+                        for _ in range(100):
+                            s.sendall(bytes(1 << 20))
+                    except OSError:
+                        pass  # the connection was ended: as it should be
+                    s.close()
+                check(server.memory() - before < 20 << 20, f"{line}: a body took {(server.memory() - before) >> 20} MiB")
+        # The control: where a body is wanted it is taken, and this is how it shows.
+        before = server.memory()
+        s = server.connect(20)
+        s.sendall(f"PUT /main/cas/{key(BLOB)} HTTP/1.1\r\nHost: h\r\nAuthorization: Bearer {token}\r\nContent-Length: 200000000\r\n\r\n".encode())
+        for _ in range(100):
+            s.sendall(bytes(1 << 20))
+        check(server.memory() - before > 50 << 20, "a wanted body does not show in memory: this test shows nothing")
+        s.close()
+
+
+def unread_records(binary):
+    """Readers of a large record that read nothing: so many as fit into the memory for them, and no more; writers are served."""
+    name, value = key(b"large"), bytes(30 << 20)
+    with Cached(binary, instances=["name: cc, opaque: true"], limits_in_flight="64MiB") as server:
+        equal(server.call("PUT", f"/cc/ac/{name}", value).status, 201, "positive control")
+        held = []
+        for _ in range(12):
+            s = socket.socket()
+            s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+            s.connect(("127.0.0.1", server.port))
+            s.sendall(f"GET /cc/ac/{name} HTTP/1.1\r\nHost: h\r\n\r\n".encode())
+            held.append(s)
+        answers = [s.recv(12) for s in held]
+        equal(sorted(answers), [b"HTTP/1.1 200"] * 2 + [b"HTTP/1.1 503"] * 10, "twelve readers of 30 MiB within 64 MiB")
+        check(server.memory() < 180 << 20, f"memory: {server.memory() >> 20} MiB")
+        equal(server.put(BLOB), 201, "a writer meanwhile")
+        for s in held:
+            s.close()
+        for _ in range(200):
+            if server.call("GET", f"/cc/ac/{name}").status == 200:
+                return
+            threading.Event().wait(0.02)
+        raise Failed("no reader once the others have gone")
+
+
 def in_flight(binary):
     """Bodies beyond the server's memory for them are told 503, later ones are taken."""
     body = b"i" * 900_000
@@ -167,4 +220,4 @@ def drain_has_an_end(binary):
 
 
 if __name__ == "__main__":
-    main([deadlines, caps, announced_memory, in_flight, goes_away, drains, drain_has_an_end])
+    main([deadlines, caps, announced_memory, unwanted_bodies, unread_records, in_flight, goes_away, drains, drain_has_an_end])

@@ -140,6 +140,52 @@ TEST(HttpFace, LimitsBeforeTheBody) {
     EXPECT_EQ(body_on_get->status, 413u);
 }
 
+TEST(HttpFace, ResponsesInMemoryAreLeased) {
+    Faced f;
+    const std::string ac = "/ccache/ac/" + name_of("key").hex(), value(100'000, 'v');
+    EXPECT_EQ(f.status(Method::put, ac, value), 201u);
+    const std::string cas = "/cas/" + name_of(value).hex();
+    EXPECT_EQ(f.status(Method::put, cas, value), 201u);
+    std::vector<HttpResponse> held;
+    while (f.service.answering() + value.size() <= f.service.limits().in_flight) {
+        held.push_back(f.ask(Method::get, ac));
+        ASSERT_EQ(held.back().status, 200u);
+        ASSERT_EQ(f.service.answering(), held.size() * value.size());
+        held.back().body = Bytes();
+    }
+    EXPECT_EQ(f.status(Method::get, ac), 503u);
+    EXPECT_EQ(f.status(Method::head, ac), 200u);
+    EXPECT_EQ(f.status(Method::get, cas), 200u) << "from its file";
+    EXPECT_EQ(f.status(Method::put, ac, value + "w"), 200u) << "writers have a share of their own";
+    held.clear();
+    EXPECT_EQ(f.service.answering(), 0u);
+    EXPECT_EQ(f.status(Method::get, ac), 200u);
+}
+
+TEST(HttpFace, PagesTakeNoBody) {
+    Faced f;
+    for (const auto& [method, target] : {std::pair{Method::get, "/healthz"},
+                                         {Method::head, "/healthz"},
+                                         {Method::get, "/"},
+                                         {Method::get, "/status"},
+                                         {Method::get, "/metrics"},
+                                         {Method::options, "/dav/"},
+                                         {Method::options, "/ccache/dav/a"}}) {
+        for (const char* authorization : {"", "Bearer 0123456789abcdef"}) {
+            HttpWork work;
+            HttpHead head{method, target, authorization, {}, {}, {}, 0};
+            EXPECT_FALSE(f.face.plan(head, work).has_value()) << target << ", the control: no body";
+            head.length = 1;
+            const auto early = f.face.plan(head, work);
+            ASSERT_TRUE(early.has_value()) << target;
+            EXPECT_EQ(early->status, 413u) << target;
+            head.length = std::nullopt;  // in chunks: as many bytes as `most` are read
+            EXPECT_FALSE(f.face.plan(head, work).has_value());
+            EXPECT_EQ(work.most, 0u) << target;
+        }
+    }
+}
+
 TEST(HttpFace, WebDav) {
     Faced f;
     EXPECT_EQ(f.status(Method::get, "/dav/.sccache_check"), 404u);
