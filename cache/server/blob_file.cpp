@@ -125,7 +125,7 @@ uint64_t BlobReader::kept() const {
     return all;
 }
 
-Result<std::optional<BlobFile>> BlobReader::open(const Digest& key, bool* slow) {
+Result<std::optional<BlobFile>> BlobReader::open(const Digest& key, bool* slow, uint64_t most) {
     static const Digest empty = sha256({});
     if (key == empty) return std::optional(BlobFile());
     const std::string path = store_.path_of(Keyspace::blob, key);
@@ -152,7 +152,7 @@ Result<std::optional<BlobFile>> BlobReader::open(const Digest& key, bool* slow) 
     file.size_ = static_cast<uint64_t>(info.st_size);
     bool whole = regular;
     const bool known = regular && trusted(key, identity, now);
-    if (regular && !known && slow != nullptr && file.size_ > moment) {
+    if (regular && !known && slow != nullptr && file.size_ > most) {
         *slow = true;
         return std::optional<BlobFile>();
     }

@@ -45,8 +45,9 @@ class BlobReader {
 public:
     // `again_after` in seconds; 0: hash at every read.
     BlobReader(DiskStore& store, int64_t again_after) : store_(store), again_after_(again_after) {}
-    // With `slow`: sets it instead of hashing a large file, and answers nothing.
-    Result<std::optional<BlobFile>> open(const Digest& key, bool* slow = nullptr);
+    static constexpr uint64_t moment = uint64_t{1} << 20;  // hashed in less than a millisecond
+    // With `slow`: sets it instead of hashing a file of more than `most` bytes, and answers nothing.
+    Result<std::optional<BlobFile>> open(const Digest& key, bool* slow = nullptr, uint64_t most = moment);
     // Whether a blob of this size is there; counts as a use. Its bytes are not verified.
     Result<bool> has(const Digest& key, uint64_t size);
     uint64_t hashed() const { return hashed_; }
@@ -55,8 +56,7 @@ public:
 
 private:
     static constexpr size_t shards = 16, most_in_shard = 4096;
-    static constexpr uint64_t small = 32 * 1024;           // read whole; beyond, sendfile is steadier
-    static constexpr uint64_t moment = uint64_t{1} << 20;  // hashed in less than a millisecond
+    static constexpr uint64_t small = 32 * 1024;  // read whole; beyond, sendfile is steadier
     struct Identity {
         uint64_t device = 0, inode = 0, size = 0;
         int64_t modified = 0, changed = 0;

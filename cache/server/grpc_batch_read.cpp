@@ -95,31 +95,85 @@ void put_blob(Pieces& out, const reapi::Digest& digest, const BlobName& name, An
     out.add(std::move(bytes));
 }
 
+class BatchReadCall final : public Call {
+public:
+    BatchReadCall(CallContext& shared, grpc::ServerCompletionQueue& queue, const AskForBatchRead& ask)
+        : Call(shared, queue, "BatchReadBlobs"), ask_(ask) {
+        ask_(&context_, &request_, &writer_, &queue, &queue, tag());
+    }
+
+private:
+    void wait_for_next() override { new BatchReadCall(shared_, queue_, ask_); }
+    bool begin_at_once() override {
+        in_ = request_.Length();
+        if (const grpc::Status s = parse(); !s.ok()) return end(s), true;
+        if (total_ > small_batch || names_.size() > small_count) return false;
+        bool slow = false;
+        if (!read(&slow)) return false;
+        return finish(), true;
+    }
+    void begin() override {
+        read(nullptr);
+        finish();
+    }
+    void end(const grpc::Status& status) override { writer_.FinishWithError(ended(status), tag()); }
+    std::string subject() const override { return asked_.instance_name(); }
+
+    grpc::Status parse() {
+        using Request = reapi::BatchReadBlobsRequest;
+        if (!grpc::SerializationTraits<Request>::Deserialize(&request_, &asked_).ok()) return invalid("no BatchReadBlobsRequest");
+        if (grpc::Status s = check_function(asked_.digest_function()); !s.ok()) return s;
+        auto reads = shared_.service.reads(*caller_, asked_.instance_name());
+        if (!reads.ok()) return status_of(reads.refused());
+        reads_.emplace(std::move(*reads));
+        constexpr auto most = static_cast<uint64_t>(grpc_most_batch);
+        names_.reserve(static_cast<size_t>(asked_.digests_size()));
+        for (const reapi::Digest& digest : asked_.digests()) {
+            const auto name = name_of(digest);
+            if (!name) return invalid("a digest is none");
+            if (name->size > most || (total_ += name->size) > most)
+                return invalid("the batch is larger than max_batch_total_size_bytes");
+            names_.push_back(*name);
+        }
+        return grpc::Status::OK;
+    }
+
+    // False: the next blob must be hashed first, which `slow` does not want.
+    bool read(bool* slow) {
+        for (; next_ < names_.size(); ++next_) {
+            auto found = reads_->open(names_[next_].digest, slow, 0);
+            if (slow != nullptr && *slow) return false;
+            put_blob(pieces_, asked_.digests(static_cast<int>(next_)), names_[next_], std::move(found));
+        }
+        return true;
+    }
+
+    void finish() {
+        reads_.reset();  // counted by the time that the client has its answer
+        const grpc::ByteBuffer response = pieces_.take();
+        out_ = response.Length();
+        writer_.Finish(response, ended(grpc::Status::OK), tag());
+    }
+
+    // What is read on the thread that serves sockets.
+    static constexpr uint64_t small_batch = 256 * 1024;
+    static constexpr size_t small_count = 256;
+
+    const AskForBatchRead ask_;
+    grpc::ByteBuffer request_;
+    grpc::ServerAsyncResponseWriter<grpc::ByteBuffer> writer_{&context_};
+    reapi::BatchReadBlobsRequest asked_;
+    std::optional<Service::BlobReads> reads_;
+    std::vector<BlobName> names_;
+    uint64_t total_ = 0;
+    size_t next_ = 0;
+    Pieces pieces_;
+};
+
 }  // namespace
 
-grpc::Status batch_read(CallContext& shared, const Caller& caller, grpc::ByteBuffer& request, grpc::ByteBuffer& response) {
-    reapi::BatchReadBlobsRequest asked;
-    if (grpc::Status s = grpc::SerializationTraits<reapi::BatchReadBlobsRequest>::Deserialize(&request, &asked); !s.ok())
-        return invalid("no BatchReadBlobsRequest");
-    if (grpc::Status s = check_function(asked.digest_function()); !s.ok()) return s;
-    auto reads = shared.service.reads(caller, asked.instance_name());
-    if (!reads.ok()) return status_of(reads.refused());
-    constexpr auto most = static_cast<uint64_t>(grpc_most_batch);
-    std::vector<BlobName> names;
-    names.reserve(static_cast<size_t>(asked.digests_size()));
-    uint64_t total = 0;
-    for (const reapi::Digest& digest : asked.digests()) {
-        const auto name = name_of(digest);
-        if (!name) return invalid("a digest is none");
-        if (name->size > most || (total += name->size) > most)
-            return invalid("the batch is larger than max_batch_total_size_bytes");
-        names.push_back(*name);
-    }
-    Pieces out;
-    for (size_t i = 0; i < names.size(); ++i)
-        put_blob(out, asked.digests(static_cast<int>(i)), names[i], reads->open(names[i].digest));
-    response = out.take();
-    return grpc::Status::OK;
+void serve_batch_read(CallContext& shared, grpc::ServerCompletionQueue& queue, const AskForBatchRead& ask) {
+    new BatchReadCall(shared, queue, ask);
 }
 
 }  // namespace kiln

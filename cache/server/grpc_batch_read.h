@@ -6,8 +6,13 @@
 
 namespace kiln {
 
-// Parses `request` and fills `response`, both as they are on the wire. A blob that is missing or cannot be read has a status
-// of its own; a batch that is malformed, too large or not the caller's to read is refused as a whole.
-grpc::Status batch_read(CallContext& shared, const Caller& caller, grpc::ByteBuffer& request, grpc::ByteBuffer& response);
+// How to ask gRPC for the next call of the method: its context, request, writer, two queues and tag.
+using AskForBatchRead =
+    std::function<void(grpc::ServerContext*, grpc::ByteBuffer*, grpc::ServerAsyncResponseWriter<grpc::ByteBuffer>*,
+                       grpc::CompletionQueue*, grpc::ServerCompletionQueue*, void*)>;
+
+// A blob that is missing or cannot be read has a status of its own; a batch that is malformed, too large or not the caller's to
+// read is refused as a whole.
+void serve_batch_read(CallContext& shared, grpc::ServerCompletionQueue& queue, const AskForBatchRead& ask);
 
 }  // namespace kiln

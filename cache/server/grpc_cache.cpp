@@ -11,83 +11,81 @@ namespace {
 
 constexpr size_t most_directories = 100'000;  // of one tree
 
-template <class Body>
-grpc::ServerUnaryReactor* answer(grpc::CallbackServerContext* context, const Body& body) {
-    grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-    reactor->Finish(body());
-    return reactor;
-}
-
 void set_status(google::rpc::Status* out, const grpc::Status& status) {
     out->set_code(static_cast<int32_t>(status.error_code()));
     out->set_message(status.error_message());
 }
 
-Digest key_of(const BlobName& name) { return name.digest; }
-
-class CapabilitiesCalls final : public reapi::Capabilities::CallbackService {
+class CapabilitiesCalls final : public CallService {
 public:
     explicit CapabilitiesCalls(CallContext& context) : shared_(context) {}
-
-    grpc::ServerUnaryReactor* GetCapabilities(grpc::CallbackServerContext* context, const reapi::GetCapabilitiesRequest* request,
-                                              reapi::ServerCapabilities* out) override {
-        return answer(context, [&] {
-            const Caller caller = shared_.caller(*context);
-            const auto instance = shared_.service.enter(caller, request->instance_name(), Role::read);
-            if (!instance.ok()) return status_of(instance.refused());
-            reapi::CacheCapabilities& cache = *out->mutable_cache_capabilities();
-            cache.add_digest_functions(reapi::DigestFunction::SHA256);
-            cache.mutable_action_cache_update_capabilities()->set_update_enabled(caller.may(Role::ac_write, instance->name));
-            cache.set_max_batch_total_size_bytes(grpc_most_batch);
-            cache.set_symlink_absolute_path_strategy(reapi::SymlinkAbsolutePathStrategy::DISALLOWED);
-            cache.add_supported_compressors(reapi::Compressor::ZSTD);
-            cache.add_supported_batch_update_compressors(reapi::Compressor::ZSTD);
-            out->mutable_low_api_version()->set_major(2);
-            out->mutable_high_api_version()->set_major(2);
-            out->mutable_high_api_version()->set_minor(11);
-            return grpc::Status::OK;
-        });
+    grpc::Service& service() override { return service_; }
+    void serve(grpc::ServerCompletionQueue& queue) override {
+        serve_unary(shared_, queue, "GetCapabilities", service_, &Service::RequestGetCapabilities,
+                    [this](const Caller& caller, const reapi::GetCapabilitiesRequest& request, reapi::ServerCapabilities& out) {
+                        return get(caller, request, out);
+                    });
     }
 
 private:
+    using Service = reapi::Capabilities::AsyncService;
+
+    grpc::Status get(const Caller& caller, const reapi::GetCapabilitiesRequest& request, reapi::ServerCapabilities& out) {
+        const auto instance = shared_.service.enter(caller, request.instance_name(), Role::read);
+        if (!instance.ok()) return status_of(instance.refused());
+        reapi::CacheCapabilities& cache = *out.mutable_cache_capabilities();
+        cache.add_digest_functions(reapi::DigestFunction::SHA256);
+        cache.mutable_action_cache_update_capabilities()->set_update_enabled(caller.may(Role::ac_write, instance->name));
+        cache.set_max_batch_total_size_bytes(grpc_most_batch);
+        cache.set_symlink_absolute_path_strategy(reapi::SymlinkAbsolutePathStrategy::DISALLOWED);
+        cache.add_supported_compressors(reapi::Compressor::ZSTD);
+        cache.add_supported_batch_update_compressors(reapi::Compressor::ZSTD);
+        out.mutable_low_api_version()->set_major(2);
+        out.mutable_high_api_version()->set_major(2);
+        out.mutable_high_api_version()->set_minor(11);
+        return grpc::Status::OK;
+    }
+
     CallContext& shared_;
+    Service service_;
 };
 
-class ActionCacheCalls final : public reapi::ActionCache::CallbackService {
+class ActionCacheCalls final : public CallService {
 public:
     explicit ActionCacheCalls(CallContext& context) : shared_(context) {}
-
-    grpc::ServerUnaryReactor* GetActionResult(grpc::CallbackServerContext* context, const reapi::GetActionResultRequest* request,
-                                              reapi::ActionResult* out) override {
-        return answer(context, [&] {
-            const auto key = name_of(request->action_digest());
-            if (!key) return invalid("the action's digest is none");
-            if (grpc::Status s = check_function(request->digest_function()); !s.ok()) return s;
-            return get(shared_.caller(*context), request->instance_name(), key_of(*key), *out);
-        });
-    }
-
-    grpc::ServerUnaryReactor* UpdateActionResult(grpc::CallbackServerContext* context,
-                                                 const reapi::UpdateActionResultRequest* request,
-                                                 reapi::ActionResult* out) override {
-        return answer(context, [&] {
-            const auto key = name_of(request->action_digest());
-            if (!key) return invalid("the action's digest is none");
-            if (grpc::Status s = check_function(request->digest_function()); !s.ok()) return s;
-            if (!request->has_action_result()) return invalid("no action result");
-            const Caller caller = shared_.caller(*context);
-            const std::string bytes = request->action_result().SerializeAsString();
-            const auto written = shared_.service.put_action(caller, request->instance_name(), key_of(*key), as_bytes(bytes));
-            if (!written.ok()) return status_of(written.refused());
-            // What the cache now holds: with kept_first, not what was sent.
-            if (*written == Written::kept_first && caller.may(Role::read, request->instance_name()))
-                return get(caller, request->instance_name(), key_of(*key), *out);
-            *out = request->action_result();
-            return grpc::Status::OK;
-        });
+    grpc::Service& service() override { return service_; }
+    void serve(grpc::ServerCompletionQueue& queue) override {
+        serve_unary(shared_, queue, "GetActionResult", service_, &Service::RequestGetActionResult,
+                    [this](const Caller& caller, const reapi::GetActionResultRequest& request, reapi::ActionResult& out) {
+                        const auto key = name_of(request.action_digest());
+                        if (!key) return invalid("the action's digest is none");
+                        if (grpc::Status s = check_function(request.digest_function()); !s.ok()) return s;
+                        return get(caller, request.instance_name(), key->digest, out);
+                    });
+        serve_unary(shared_, queue, "UpdateActionResult", service_, &Service::RequestUpdateActionResult,
+                    [this](const Caller& caller, const reapi::UpdateActionResultRequest& request, reapi::ActionResult& out) {
+                        return update(caller, request, out);
+                    });
     }
 
 private:
+    using Service = reapi::ActionCache::AsyncService;
+
+    grpc::Status update(const Caller& caller, const reapi::UpdateActionResultRequest& request, reapi::ActionResult& out) {
+        const auto key = name_of(request.action_digest());
+        if (!key) return invalid("the action's digest is none");
+        if (grpc::Status s = check_function(request.digest_function()); !s.ok()) return s;
+        if (!request.has_action_result()) return invalid("no action result");
+        const std::string bytes = request.action_result().SerializeAsString();
+        const auto written = shared_.service.put_action(caller, request.instance_name(), key->digest, as_bytes(bytes));
+        if (!written.ok()) return status_of(written.refused());
+        // What the cache now holds: with kept_first, not what was sent.
+        if (*written == Written::kept_first && caller.may(Role::read, request.instance_name()))
+            return get(caller, request.instance_name(), key->digest, out);
+        out = request.action_result();
+        return grpc::Status::OK;
+    }
+
     grpc::Status get(const Caller& caller, const std::string& instance, const Digest& key, reapi::ActionResult& out) {
         const auto found = shared_.service.action(caller, instance, key);
         if (!found.ok()) return status_of(found.refused());
@@ -99,45 +97,51 @@ private:
     }
 
     CallContext& shared_;
+    Service service_;
 };
 
+using BlobService =
+    reapi::ContentAddressableStorage::WithRawMethod_BatchReadBlobs<reapi::ContentAddressableStorage::AsyncService>;
+
 // Walks a tree of Directory messages, a page a message.
-class TreeReactor final : public grpc::ServerWriteReactor<reapi::GetTreeResponse> {
+class TreeCall final : public Call {
 public:
-    TreeReactor(CallContext& shared, grpc::CallbackServerContext* context, const reapi::GetTreeRequest& request)
-        : shared_(shared), caller_(shared.caller(*context)), instance_(request.instance_name()) {
-        const auto root = name_of(request.root_digest());
-        grpc::Status ready = check_function(request.digest_function());
-        if (!root) ready = invalid("the root's digest is none");
-        if (ready.ok()) {
-            want(*root);
-            next(true);
-        } else {
-            Finish(ready);
-        }
+    TreeCall(CallContext& shared, grpc::ServerCompletionQueue& queue, BlobService& service)
+        : Call(shared, queue, "GetTree"), service_(service) {
+        service.RequestGetTree(&context_, &request_, &writer_, &queue, &queue, tag());
     }
-    void OnWriteDone(bool ok) override {
-        if (!ok) return Finish({grpc::StatusCode::CANCELLED, "the client went away"});
-        next(false);
-    }
-    void OnDone() override { delete this; }
 
 private:
+    void wait_for_next() override { new TreeCall(shared_, queue_, service_); }
+    void begin() override {
+        if (grpc::Status s = check_function(request_.digest_function()); !s.ok()) return end(s);
+        const auto root = name_of(request_.root_digest());
+        if (!root) return end(invalid("the root's digest is none"));
+        want(*root);
+        next(true);
+    }
+    void go_on(bool ok) override {
+        if (!ok) return end({grpc::StatusCode::CANCELLED, "the client went away"});
+        next(false);
+    }
+    void end(const grpc::Status& status) override { writer_.Finish(ended(status), tag()); }
+    std::string subject() const override { return request_.instance_name(); }
+
     void want(const BlobName& name) {
-        if (seen_.size() < most_directories && seen_.insert(name.digest).second) queue_.push_back(name);
+        if (seen_.size() < most_directories && seen_.insert(name.digest).second) ahead_.push_back(name);
     }
 
     // What is missing below the root is left out, as the API has it.
     void next(bool first) {
         page_.Clear();
         size_t bytes = 0;
-        while (!queue_.empty() && bytes < 1024 * 1024) {
-            const BlobName name = queue_.front();
-            queue_.pop_front();
-            auto file = shared_.service.blob(caller_, instance_, name.digest);
-            if (!file.ok()) return Finish(status_of(file.refused()));
+        while (!ahead_.empty() && bytes < 1024 * 1024) {
+            const BlobName name = ahead_.front();
+            ahead_.pop_front();
+            auto file = shared_.service.blob(*caller_, request_.instance_name(), name.digest);
+            if (!file.ok()) return end(status_of(file.refused()));
             const bool there = file->has_value() && (*file)->size() == name.size && name.size <= 1024 * 1024;
-            if (!there && first) return Finish({grpc::StatusCode::NOT_FOUND, "the root is not in the cache"});
+            if (!there && first) return end({grpc::StatusCode::NOT_FOUND, "the root is not in the cache"});
             first = false;
             if (!there) continue;
             const Result<Bytes> all = (*file)->all();
@@ -148,73 +152,63 @@ private:
             bytes += all->size();
             page_.add_directories()->Swap(&directory);
         }
-        if (page_.directories().empty()) return Finish(grpc::Status::OK);
-        StartWrite(&page_);
+        if (page_.directories().empty()) return end(grpc::Status::OK);
+        out_ += bytes;
+        writer_.Write(page_, tag());
     }
 
-    CallContext& shared_;
-    const Caller caller_;
-    const std::string instance_;
-    std::deque<BlobName> queue_;
+    BlobService& service_;
+    reapi::GetTreeRequest request_;
+    grpc::ServerAsyncWriter<reapi::GetTreeResponse> writer_{&context_};
+    std::deque<BlobName> ahead_;
     std::set<Digest> seen_;
     reapi::GetTreeResponse page_;
 };
 
-class BlobCalls final : public reapi::ContentAddressableStorage::WithRawCallbackMethod_BatchReadBlobs<
-                            reapi::ContentAddressableStorage::CallbackService> {
+class BlobCalls final : public CallService {
 public:
     explicit BlobCalls(CallContext& context) : shared_(context) {}
-
-    grpc::ServerUnaryReactor* FindMissingBlobs(grpc::CallbackServerContext* context,
-                                               const reapi::FindMissingBlobsRequest* request,
-                                               reapi::FindMissingBlobsResponse* out) override {
-        return answer(context, [&] {
-            if (grpc::Status s = check_function(request->digest_function()); !s.ok()) return s;
-            const Caller caller = shared_.caller(*context);
-            const auto instance = shared_.service.enter(caller, request->instance_name(), Role::read);
-            if (!instance.ok()) return status_of(instance.refused());
-            for (const reapi::Digest& digest : request->blob_digests()) {
-                const auto name = name_of(digest);
-                if (!name) return invalid("a digest is none");
-                const auto there = shared_.service.has_blob(caller, request->instance_name(), *name);
-                if (!there.ok()) return status_of(there.refused());
-                if (!*there) *out->add_missing_blob_digests() = digest;
-            }
-            return grpc::Status::OK;
-        });
-    }
-
-    grpc::ServerUnaryReactor* BatchUpdateBlobs(grpc::CallbackServerContext* context,
-                                               const reapi::BatchUpdateBlobsRequest* request,
-                                               reapi::BatchUpdateBlobsResponse* out) override {
-        return answer(context, [&] {
-            if (grpc::Status s = check_function(request->digest_function()); !s.ok()) return s;
-            const Caller caller = shared_.caller(*context);
-            const auto instance = shared_.service.enter(caller, request->instance_name(), Role::cas_write);
-            if (!instance.ok()) return status_of(instance.refused());
-            for (const auto& one : request->requests()) {
-                auto& said = *out->add_responses();
-                *said.mutable_digest() = one.digest();
-                set_status(said.mutable_status(), put(caller, request->instance_name(), one));
-            }
-            return grpc::Status::OK;
-        });
-    }
-
-    grpc::ServerUnaryReactor* BatchReadBlobs(grpc::CallbackServerContext* context, const grpc::ByteBuffer* request,
-                                             grpc::ByteBuffer* out) override {
-        return answer(context, [&] {
-            grpc::ByteBuffer own(*request);
-            return batch_read(shared_, shared_.caller(*context), own, *out);
-        });
-    }
-
-    grpc::ServerWriteReactor<reapi::GetTreeResponse>* GetTree(grpc::CallbackServerContext* context,
-                                                              const reapi::GetTreeRequest* request) override {
-        return new TreeReactor(shared_, context, *request);
+    grpc::Service& service() override { return service_; }
+    void serve(grpc::ServerCompletionQueue& queue) override {
+        serve_unary(shared_, queue, "FindMissingBlobs", service_, &BlobService::RequestFindMissingBlobs,
+                    [this](const Caller& caller, const reapi::FindMissingBlobsRequest& request,
+                           reapi::FindMissingBlobsResponse& out) { return find_missing(caller, request, out); });
+        serve_unary(shared_, queue, "BatchUpdateBlobs", service_, &BlobService::RequestBatchUpdateBlobs,
+                    [this](const Caller& caller, const reapi::BatchUpdateBlobsRequest& request,
+                           reapi::BatchUpdateBlobsResponse& out) { return update(caller, request, out); });
+        serve_batch_read(shared_, queue, [this](auto&&... how) { service_.RequestBatchReadBlobs(how...); });
+        new TreeCall(shared_, queue, service_);
     }
 
 private:
+    grpc::Status find_missing(const Caller& caller, const reapi::FindMissingBlobsRequest& request,
+                              reapi::FindMissingBlobsResponse& out) {
+        if (grpc::Status s = check_function(request.digest_function()); !s.ok()) return s;
+        const auto instance = shared_.service.enter(caller, request.instance_name(), Role::read);
+        if (!instance.ok()) return status_of(instance.refused());
+        for (const reapi::Digest& digest : request.blob_digests()) {
+            const auto name = name_of(digest);
+            if (!name) return invalid("a digest is none");
+            const auto there = shared_.service.has_blob(caller, request.instance_name(), *name);
+            if (!there.ok()) return status_of(there.refused());
+            if (!*there) *out.add_missing_blob_digests() = digest;
+        }
+        return grpc::Status::OK;
+    }
+
+    grpc::Status update(const Caller& caller, const reapi::BatchUpdateBlobsRequest& request,
+                        reapi::BatchUpdateBlobsResponse& out) {
+        if (grpc::Status s = check_function(request.digest_function()); !s.ok()) return s;
+        const auto instance = shared_.service.enter(caller, request.instance_name(), Role::cas_write);
+        if (!instance.ok()) return status_of(instance.refused());
+        for (const auto& one : request.requests()) {
+            auto& said = *out.add_responses();
+            *said.mutable_digest() = one.digest();
+            set_status(said.mutable_status(), put(caller, request.instance_name(), one));
+        }
+        return grpc::Status::OK;
+    }
+
     grpc::Status put(const Caller& caller, const std::string& instance, const reapi::BatchUpdateBlobsRequest::Request& one) {
         const auto name = name_of(one.digest());
         if (!name) return invalid("the digest is none");
@@ -234,12 +228,13 @@ private:
     }
 
     CallContext& shared_;
+    BlobService service_;
 };
 
 }  // namespace
 
-std::unique_ptr<grpc::Service> make_capabilities(CallContext& context) { return std::make_unique<CapabilitiesCalls>(context); }
-std::unique_ptr<grpc::Service> make_action_cache(CallContext& context) { return std::make_unique<ActionCacheCalls>(context); }
-std::unique_ptr<grpc::Service> make_blobs(CallContext& context) { return std::make_unique<BlobCalls>(context); }
+std::unique_ptr<CallService> make_capabilities(CallContext& context) { return std::make_unique<CapabilitiesCalls>(context); }
+std::unique_ptr<CallService> make_action_cache(CallContext& context) { return std::make_unique<ActionCacheCalls>(context); }
+std::unique_ptr<CallService> make_blobs(CallContext& context) { return std::make_unique<BlobCalls>(context); }
 
 }  // namespace kiln

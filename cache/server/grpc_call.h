@@ -1,13 +1,19 @@
 #pragma once
 // What the calls of the gRPC front share. One of the files that include gRPC: its services are generated classes, which the
-// three sources of the front derive from.
+// sources of the front use.
+//
+// gRPC's events come to few threads, one on a small machine, since threads that wait for them in turn cost every event a change
+// of thread. What may wait for the disk therefore runs in a pool.
 
 #include <grpcpp/alarm.h>
 #include <grpcpp/grpcpp.h>
 #include <remote_execution.grpc.pb.h>
 
+#include <type_traits>
+
 #include "cache/protocol/resource_name.h"
 #include "cache/server/grpc_server.h"
+#include "cache/server/work_pool.h"
 
 namespace kiln {
 
@@ -15,35 +21,135 @@ namespace reapi = build::bazel::remote::execution::v2;
 
 struct CallContext {
     Service& service;
+    Log& log;
     const std::function<std::shared_ptr<const Access>()> access;
     const GrpcOptions options;
+    WorkPool work;
 
     // By the metadata "authorization: Bearer T" (or Basic); a field that is neither is no token.
-    Caller caller(const grpc::CallbackServerContext& context) const;
+    std::shared_ptr<const Caller> caller(const grpc::ServerContext& context) const;
 };
+
+// One call, from the wait for it to its end, when it deletes itself. Its events come one at a time: begin() and go_on() end with
+// the one operation that brings the next event, and may be on another thread already, or over, when that returns.
+class Call {
+public:
+    Call(const Call&) = delete;
+    Call& operator=(const Call&) = delete;
+    void on_event(bool ok);
+
+protected:
+    // `method` outlives the call.
+    Call(CallContext& shared, grpc::ServerCompletionQueue& queue, const char* method)
+        : shared_(shared), queue_(queue), method_(method) {}
+    virtual ~Call() = default;
+    virtual void wait_for_next() = 0;               // makes the object that waits for the next call of this method
+    virtual bool begin_at_once() { return false; }  // without waiting for anything; false: begin() has to
+    virtual void begin() = 0;
+    virtual void go_on(bool) {}                        // the operation before is done; false: the client is gone
+    virtual void end(const grpc::Status& status) = 0;  // by an operation; with ended()
+    virtual std::string subject() const = 0;           // for the log: an instance or a resource name
+    // Marks the next event as the last and writes the log.
+    const grpc::Status& ended(const grpc::Status& status);
+    void* tag() { return this; }
+
+    CallContext& shared_;
+    grpc::ServerCompletionQueue& queue_;
+    grpc::ServerContext context_;
+    std::shared_ptr<const Caller> caller_;
+    uint64_t in_ = 0, out_ = 0;  // bytes of messages, for the log
+
+private:
+    enum class State { waits, runs, ends };
+    template <class Step>
+    void guarded(Step step);
+    const char* const method_;
+    State state_ = State::waits;
+    std::chrono::steady_clock::time_point began_{};
+};
+
+// A call that answers one message by one.
+template <class Calls, class Request, class Response>
+class UnaryCall final : public Call {
+public:
+    using Writer = grpc::ServerAsyncResponseWriter<Response>;
+    struct Method {
+        const char* name;
+        Calls& service;
+        void (Calls::*ask)(grpc::ServerContext*, Request*, Writer*, grpc::CompletionQueue*, grpc::ServerCompletionQueue*, void*);
+        std::function<grpc::Status(const Caller&, const Request&, Response&)> answer;
+    };
+    UnaryCall(CallContext& shared, grpc::ServerCompletionQueue& queue, std::shared_ptr<const Method> method)
+        : Call(shared, queue, method->name), what_(std::move(method)) {
+        (what_->service.*what_->ask)(&context_, &request_, &writer_, &queue, &queue, tag());
+    }
+
+private:
+    void wait_for_next() override { new UnaryCall(shared_, queue_, what_); }
+    void begin() override {
+        const grpc::Status status = what_->answer(*caller_, request_, response_);
+        if (shared_.log.wants_requests()) {
+            in_ = request_.ByteSizeLong();
+            out_ = status.ok() ? response_.ByteSizeLong() : 0;
+        }
+        writer_.Finish(response_, ended(status), tag());
+    }
+    void end(const grpc::Status& status) override { writer_.FinishWithError(ended(status), tag()); }
+    std::string subject() const override {
+        if constexpr (requires { request_.instance_name(); })
+            return request_.instance_name();
+        else if constexpr (requires { request_.resource_name(); })
+            return request_.resource_name();
+        else
+            return request_.service();
+    }
+
+    const std::shared_ptr<const Method> what_;
+    Request request_;
+    Response response_;
+    Writer writer_{&context_};
+};
+
+template <class Calls, class Request, class Response, class Answer>
+void serve_unary(CallContext& shared, grpc::ServerCompletionQueue& queue, const char* name, std::type_identity_t<Calls>& service,
+                 void (Calls::*ask)(grpc::ServerContext*, Request*, grpc::ServerAsyncResponseWriter<Response>*,
+                                    grpc::CompletionQueue*, grpc::ServerCompletionQueue*, void*),
+                 Answer answer) {
+    using Method = typename UnaryCall<Calls, Request, Response>::Method;
+    new UnaryCall<Calls, Request, Response>(shared, queue,
+                                            std::make_shared<const Method>(Method{name, service, ask, std::move(answer)}));
+}
+
+// A service and the calls that wait on a queue for its methods.
+class CallService {
+public:
+    virtual ~CallService() = default;
+    virtual grpc::Service& service() = 0;
+    virtual void serve(grpc::ServerCompletionQueue& queue) = 0;
+};
+
+std::unique_ptr<CallService> make_capabilities(CallContext& context);
+std::unique_ptr<CallService> make_action_cache(CallContext& context);
+std::unique_ptr<CallService> make_blobs(CallContext& context);
+std::unique_ptr<CallService> make_byte_stream(CallContext& context);
+std::unique_ptr<CallService> make_health(CallContext& context);
 
 grpc::Status status_of(const Refused& refused);
 grpc::Status invalid(const std::string& what);
 // Only SHA-256 is spoken; 0 is a client that says nothing.
 grpc::Status check_function(int digest_function);
 std::optional<BlobName> name_of(const reapi::Digest& digest);
-void set_digest(reapi::Digest* out, const BlobName& name);
-
-std::unique_ptr<grpc::Service> make_capabilities(CallContext& context);
-std::unique_ptr<grpc::Service> make_action_cache(CallContext& context);
-std::unique_ptr<grpc::Service> make_blobs(CallContext& context);
-std::unique_ptr<grpc::Service> make_byte_stream(CallContext& context);
 
 // Ends a call that takes too long. The call and its context may be gone when the time comes.
 class CallTimer {
 public:
-    CallTimer(grpc::CallbackServerContext* context, std::chrono::seconds after);
+    CallTimer(grpc::ServerContext* context, std::chrono::seconds after);
     ~CallTimer();
 
 private:
     struct Shared {
         std::mutex mutex;
-        grpc::CallbackServerContext* context;
+        grpc::ServerContext* context;
     };
     std::shared_ptr<Shared> shared_;
     grpc::Alarm alarm_;

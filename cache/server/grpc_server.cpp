@@ -1,84 +1,25 @@
-// Starts and ends the front, and what its calls share.
+// Starts and ends the front.
 
 #include "cache/server/grpc_server.h"
 
-#include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/resource_quota.h>
 #include <grpcpp/security/tls_certificate_provider.h>
 #include <grpcpp/security/tls_credentials_options.h>
 
-#include <ctime>
+#include <algorithm>
+#include <thread>
 
 #include "cache/server/grpc_call.h"
-#include "cache/server/http_face.h"
 #include "compiler/base/files.h"
 
 namespace kiln {
 
-Caller CallContext::caller(const grpc::CallbackServerContext& context) const {
-    const std::shared_ptr<const Access> tokens = access();
-    const auto field = context.client_metadata().find("authorization");
-    if (field == context.client_metadata().end()) return tokens->anonymous();
-    const auto token = token_of({field->second.data(), field->second.size()});
-    return tokens->caller(token ? *token : " ", std::time(nullptr));  // no token holds a space
-}
-
-grpc::Status status_of(const Refused& refused) {
-    const auto code = [&] {
-        switch (refused.why) {
-            case Refusal::bad_request:
-            case Refusal::unknown_instance:
-                return grpc::StatusCode::INVALID_ARGUMENT;
-            case Refusal::unauthenticated:
-                return grpc::StatusCode::UNAUTHENTICATED;
-            case Refusal::forbidden:
-                return grpc::StatusCode::PERMISSION_DENIED;
-            case Refusal::busy:
-                return grpc::StatusCode::UNAVAILABLE;
-            case Refusal::too_large:
-            case Refusal::full:
-                return grpc::StatusCode::RESOURCE_EXHAUSTED;
-            case Refusal::failed:
-                break;
-        }
-        return grpc::StatusCode::INTERNAL;
-    };
-    return {code(), refused.message};
-}
-
-grpc::Status invalid(const std::string& what) { return {grpc::StatusCode::INVALID_ARGUMENT, what}; }
-
-grpc::Status check_function(int digest_function) {
-    if (digest_function == reapi::DigestFunction::UNKNOWN || digest_function == reapi::DigestFunction::SHA256)
-        return grpc::Status::OK;
-    return invalid("this server speaks SHA-256 alone");
-}
-
-std::optional<BlobName> name_of(const reapi::Digest& digest) { return blob_name(digest.hash(), digest.size_bytes()); }
-
-void set_digest(reapi::Digest* out, const BlobName& name) {
-    out->set_hash(name.digest.hex());
-    out->set_size_bytes(static_cast<int64_t>(name.size));
-}
-
-CallTimer::CallTimer(grpc::CallbackServerContext* context, std::chrono::seconds after) : shared_(std::make_shared<Shared>()) {
-    shared_->context = context;
-    // What the alarm calls belongs to gRPC until it has run, which the alarm's end makes happen at once.
-    alarm_.Set(std::chrono::system_clock::now() + after, [shared = shared_](bool expired) {
-        const std::lock_guard lock(shared->mutex);
-        if (expired && shared->context != nullptr) shared->context->TryCancel();
-    });
-}
-
-CallTimer::~CallTimer() {
-    const std::lock_guard lock(shared_->mutex);
-    shared_->context = nullptr;
-}
-
 struct GrpcCalls {
-    CallContext context;
-    std::vector<std::unique_ptr<grpc::Service>> services;
+    std::unique_ptr<CallContext> context;
+    std::vector<std::unique_ptr<CallService>> services;
+    std::vector<std::unique_ptr<grpc::ServerCompletionQueue>> queues;
     std::unique_ptr<grpc::Server> server;
+    std::vector<std::thread> threads;
     int port = 0;
 };
 
@@ -88,18 +29,27 @@ GrpcServer::~GrpcServer() { drain(std::chrono::seconds(0)); }
 
 uint16_t GrpcServer::port() const { return static_cast<uint16_t>(calls_->port); }
 
+// gRPC wants a queue to be shut down when nothing can be asked of it any more, so the server goes first: its end waits for that
+// of every call, and the pool has none then.
 void GrpcServer::drain(std::chrono::seconds patience) {
-    calls_->server->Shutdown(std::chrono::system_clock::now() + patience);
-    calls_->server->Wait();
+    if (calls_->server) {
+        calls_->server->Shutdown(std::chrono::system_clock::now() + patience);
+        calls_->server->Wait();
+    }
+    for (const auto& queue : calls_->queues) queue->Shutdown();
+    for (std::thread& thread : calls_->threads) thread.join();
+    calls_->threads.clear();
+    calls_->queues.clear();
+    calls_->server.reset();
 }
 
-Result<std::unique_ptr<GrpcServer>> GrpcServer::start(Service& service, std::function<std::shared_ptr<const Access>()> access,
+Result<std::unique_ptr<GrpcServer>> GrpcServer::start(Service& service, Log& log,
+                                                      std::function<std::shared_ptr<const Access>()> access,
                                                       const GrpcOptions& options) {
-    auto calls = std::unique_ptr<GrpcCalls>(new GrpcCalls{{service, std::move(access), options}, {}, nullptr, 0});
-    calls->services.push_back(make_capabilities(calls->context));
-    calls->services.push_back(make_action_cache(calls->context));
-    calls->services.push_back(make_blobs(calls->context));
-    calls->services.push_back(make_byte_stream(calls->context));
+    auto calls = std::make_unique<GrpcCalls>();
+    calls->context.reset(new CallContext{service, log, std::move(access), options, WorkPool(options.work_threads)});
+    for (const auto make : {make_capabilities, make_action_cache, make_blobs, make_byte_stream, make_health})
+        calls->services.push_back(make(*calls->context));
 
     std::shared_ptr<grpc::ServerCredentials> credentials = grpc::InsecureServerCredentials();
     if (!options.certificate.empty()) {
@@ -115,10 +65,12 @@ Result<std::unique_ptr<GrpcServer>> GrpcServer::start(Service& service, std::fun
         credentials = tls::TlsServerCredentials(how);
     }
 
-    grpc::EnableDefaultHealthCheckService(true);
     grpc::ServerBuilder builder;
     builder.AddListeningPort(options.address + ":" + std::to_string(options.port), credentials, &calls->port);
-    for (const auto& one : calls->services) builder.RegisterService(one.get());
+    for (const auto& one : calls->services) builder.RegisterService(&one->service());
+    const unsigned queues =
+        options.io_threads != 0 ? options.io_threads : std::clamp(std::thread::hardware_concurrency() / 2, 1u, 8u);
+    for (unsigned i = 0; i < queues; ++i) calls->queues.push_back(builder.AddCompletionQueue());
     builder.SetMaxReceiveMessageSize(grpc_most_message);
     builder.SetMaxSendMessageSize(grpc_most_message);
     builder.SetResourceQuota(grpc::ResourceQuota("kiln-cached").Resize(service.limits().in_flight));
@@ -131,9 +83,19 @@ Result<std::unique_ptr<GrpcServer>> GrpcServer::start(Service& service, std::fun
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 20 * 1000);
     builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 10 * 1000);
     calls->server = builder.BuildAndStart();
-    if (!calls->server || calls->port == 0)
+    for (const auto& queue : calls->queues) {
+        if (calls->server && calls->port != 0)
+            for (const auto& one : calls->services) one->serve(*queue);
+        calls->threads.emplace_back([events = queue.get()] {
+            void* call = nullptr;
+            bool ok = false;
+            while (events->Next(&call, &ok)) static_cast<Call*>(call)->on_event(ok);
+        });
+    }
+    auto front = std::unique_ptr<GrpcServer>(new GrpcServer(std::move(calls)));
+    if (!front->calls_->server || front->calls_->port == 0)
         return environment_error("gRPC cannot listen on " + options.address + ":" + std::to_string(options.port));
-    return std::unique_ptr<GrpcServer>(new GrpcServer(std::move(calls)));
+    return front;
 }
 
 }  // namespace kiln

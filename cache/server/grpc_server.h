@@ -1,6 +1,6 @@
 #pragma once
-// The Remote Execution API's cache over gRPC: Capabilities, ContentAddressableStorage, ActionCache, ByteStream, and gRPC's
-// own health service. No Execution: an engine brings that and uses this server as its store.
+// The Remote Execution API's cache over gRPC: Capabilities, ContentAddressableStorage, ActionCache, ByteStream, and Check of
+// gRPC's health protocol. No Execution: an engine brings that and uses this server as its store.
 //
 // Promises: a message of more than 4 MiB is refused before it is read; an upload is stored when it was finished and matches
 // its digest and size, and leaves nothing otherwise; an upload or download that takes longer than its size allows is ended;
@@ -11,6 +11,7 @@
 #include <memory>
 #include <string>
 
+#include "cache/server/log.h"
 #include "cache/server/service.h"
 
 namespace kiln {
@@ -24,6 +25,8 @@ struct GrpcOptions {
     // What a stream may take in all: this, and its size at `slowest` bytes a second.
     std::chrono::seconds patience{60};
     uint64_t slowest = 64 * 1024;
+    // Threads that serve sockets, 0: one for two processors, at most 8; and those that wait for the disk.
+    unsigned io_threads = 0, work_threads = 4;
 };
 
 constexpr int grpc_most_message = 4 * 1024 * 1024;
@@ -34,9 +37,10 @@ struct GrpcCalls;
 
 class GrpcServer {
 public:
-    // `service` outlives the server; `access()` gives the tokens of now. An Error when the address cannot be had or the
+    // `service` and `log` outlive the server; `access()` gives the tokens of now. An Error when the address cannot be had or the
     // certificate not read.
-    static Result<std::unique_ptr<GrpcServer>> start(Service& service, std::function<std::shared_ptr<const Access>()> access,
+    static Result<std::unique_ptr<GrpcServer>> start(Service& service, Log& log,
+                                                     std::function<std::shared_ptr<const Access>()> access,
                                                      const GrpcOptions& options);
     ~GrpcServer();
     uint16_t port() const;

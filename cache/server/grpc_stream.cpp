@@ -18,116 +18,133 @@ std::chrono::seconds time_for(const CallContext& shared, uint64_t size) {
     return shared.options.patience + std::chrono::seconds(size / std::max<uint64_t>(shared.options.slowest, 1));
 }
 
-class ReadReactor final : public grpc::ServerWriteReactor<bs::ReadResponse> {
+using StreamService = bs::ByteStream::AsyncService;
+
+class ReadCall final : public Call {
 public:
-    ReadReactor(CallContext& shared, grpc::CallbackServerContext* context, const bs::ReadRequest& request) {
-        const grpc::Status ready = open(shared, context, request);
-        if (ready.ok()) {
-            timer_.emplace(context, time_for(shared, end_ - at_));
-            next();
-        } else {
-            Finish(ready);
-        }
+    ReadCall(CallContext& shared, grpc::ServerCompletionQueue& queue, StreamService& service)
+        : Call(shared, queue, "Read"), service_(service) {
+        service.RequestRead(&context_, &request_, &writer_, &queue, &queue, tag());
     }
-    void OnWriteDone(bool ok) override {
-        if (!ok) return Finish({grpc::StatusCode::CANCELLED, "the client went away"});
-        next();
-    }
-    void OnDone() override { delete this; }
 
 private:
-    grpc::Status open(CallContext& shared, grpc::CallbackServerContext* context, const bs::ReadRequest& request) {
-        const auto name = parse_resource_name(request.resource_name());
+    void wait_for_next() override { new ReadCall(shared_, queue_, service_); }
+    void begin() override {
+        if (const grpc::Status ready = open(); !ready.ok()) return end(ready);
+        timer_.emplace(&context_, time_for(shared_, end_ - at_));
+        next();
+    }
+    void go_on(bool ok) override {
+        if (!ok) return end({grpc::StatusCode::CANCELLED, "the client went away"});
+        next();
+    }
+    void end(const grpc::Status& status) override { writer_.Finish(ended(status), tag()); }
+    std::string subject() const override { return request_.resource_name(); }
+
+    grpc::Status open() {
+        const auto name = parse_resource_name(request_.resource_name());
         if (!name || name->upload) return invalid("the resource name is none to read");
-        auto file = shared.service.blob(shared.caller(*context), name->instance, name->blob.digest);
+        auto file = shared_.service.blob(*caller_, name->instance, name->blob.digest);
         if (!file.ok()) return status_of(file.refused());
         if (!file->has_value() || (*file)->size() != name->blob.size) return {grpc::StatusCode::NOT_FOUND, "not in the cache"};
         const int64_t size = static_cast<int64_t>(name->blob.size);
-        if (request.read_offset() < 0 || request.read_offset() > size)
+        if (request_.read_offset() < 0 || request_.read_offset() > size)
             return {grpc::StatusCode::OUT_OF_RANGE, "the offset is outside the blob"};
-        if (request.read_limit() < 0) return invalid("the limit is negative");
-        if (request.read_limit() != 0 && name->zstd) return invalid("a compressed blob is read to its end");
+        if (request_.read_limit() < 0) return invalid("the limit is negative");
+        if (request_.read_limit() != 0 && name->zstd) return invalid("a compressed blob is read to its end");
         file_ = std::move(**file);
         zstd_ = name->zstd;
-        at_ = static_cast<uint64_t>(request.read_offset());
+        at_ = static_cast<uint64_t>(request_.read_offset());
         end_ = name->blob.size;
-        if (request.read_limit() != 0) end_ = std::min(end_, at_ + static_cast<uint64_t>(request.read_limit()));
+        if (request_.read_limit() != 0) end_ = std::min(end_, at_ + static_cast<uint64_t>(request_.read_limit()));
         return grpc::Status::OK;
     }
 
     void next() {
-        std::string& data = *response_.mutable_data();
         if (zstd_ && sent_ < packed_.size()) {
             const uint64_t size = std::min<uint64_t>(piece, packed_.size() - sent_);
-            data.assign(as_text(packed_).substr(sent_, size));
+            response_.mutable_data()->assign(as_text(packed_).substr(sent_, size));
             sent_ += size;
-            return StartWrite(&response_);
+            return send();
         }
-        if (at_ == end_) return Finish(grpc::Status::OK);
+        if (at_ == end_) return end(grpc::Status::OK);
         const uint64_t size = std::min(zstd_ ? frame : piece, end_ - at_);
-        plain_.resize(size);
-        if (!file_.read(at_, plain_).ok()) return Finish({grpc::StatusCode::INTERNAL, "the cache's disk failed"});
+        std::string& plain = zstd_ ? plain_ : *response_.mutable_data();
+        plain.resize(size);
+        if (!file_.read(at_, {reinterpret_cast<uint8_t*>(plain.data()), plain.size()}).ok())
+            return end({grpc::StatusCode::INTERNAL, "the cache's disk failed"});
         at_ += size;
-        if (!zstd_) {
-            data.assign(as_text(plain_));
-            return StartWrite(&response_);
-        }
-        packed_ = zstd_compress(plain_, level);
+        if (!zstd_) return send();
+        packed_ = zstd_compress(as_bytes(plain), level);
         sent_ = 0;
         next();
     }
 
+    void send() {
+        out_ += response_.data().size();
+        writer_.Write(response_, tag());
+    }
+
+    StreamService& service_;
+    bs::ReadRequest request_;
+    grpc::ServerAsyncWriter<bs::ReadResponse> writer_{&context_};
     std::optional<CallTimer> timer_;
     BlobFile file_;
     bool zstd_ = false;
     uint64_t at_ = 0, end_ = 0;
-    Bytes plain_, packed_;
+    std::string plain_;
+    Bytes packed_;
     size_t sent_ = 0;
     bs::ReadResponse response_;
 };
 
-class WriteReactor final : public grpc::ServerReadReactor<bs::WriteRequest> {
+class WriteCall final : public Call {
 public:
-    WriteReactor(CallContext& shared, grpc::CallbackServerContext* context, bs::WriteResponse* response)
-        : shared_(shared), context_(context), caller_(shared.caller(*context)), response_(response) {
-        timer_.emplace(context, shared.options.patience);
-        StartRead(&request_);
+    WriteCall(CallContext& shared, grpc::ServerCompletionQueue& queue, StreamService& service)
+        : Call(shared, queue, "Write"), service_(service) {
+        service.RequestWrite(&context_, &reader_, &queue, &queue, tag());
     }
-
-    void OnReadDone(bool ok) override {
-        if (!ok) return Finish(invalid("the upload ended without finish_write"));
-        if (!name_) {
-            const grpc::Status begun = begin();
-            if (!begun.ok()) return Finish(begun);
-            if (there_) return finish(name_->zstd ? -1 : static_cast<int64_t>(name_->blob.size));
-        } else if (!request_.resource_name().empty() && request_.resource_name() != first_) {
-            return Finish(invalid("the resource name changes within an upload"));
-        }
-        const grpc::Status taken = take();
-        if (!taken.ok()) return Finish(taken);
-        if (!request_.finish_write()) return StartRead(&request_);
-        store();
-    }
-    void OnDone() override { delete this; }
 
 private:
-    grpc::Status begin() {
+    void wait_for_next() override { new WriteCall(shared_, queue_, service_); }
+    void begin() override {
+        timer_.emplace(&context_, shared_.options.patience);
+        reader_.Read(&request_, tag());
+    }
+    void go_on(bool ok) override {
+        if (!ok) return end(invalid("the upload ended without finish_write"));
+        if (!name_) {
+            const grpc::Status begun = name_it();
+            if (!begun.ok()) return end(begun);
+            if (there_) return finish(name_->zstd ? -1 : static_cast<int64_t>(name_->blob.size));
+        } else if (!request_.resource_name().empty() && request_.resource_name() != first_) {
+            return end(invalid("the resource name changes within an upload"));
+        }
+        const grpc::Status taken = take();
+        if (!taken.ok()) return end(taken);
+        if (!request_.finish_write()) return reader_.Read(&request_, tag());
+        store();
+    }
+    void end(const grpc::Status& status) override { reader_.FinishWithError(ended(status), tag()); }
+    std::string subject() const override { return first_; }
+
+    grpc::Status name_it() {
         const auto name = parse_resource_name(request_.resource_name());
         if (!name || !name->upload) return invalid("the resource name is none to write");
-        const auto instance = shared_.service.enter(caller_, name->instance, Role::cas_write);
+        const auto instance = shared_.service.enter(*caller_, name->instance, Role::cas_write);
         if (!instance.ok()) return status_of(instance.refused());
         if (name->blob.size > shared_.service.limits().blob)
             return status_of(
-                shared_.service.refuse(name->instance, caller_, Refusal::too_large, "the blob is larger than the server takes"));
+                shared_.service.refuse(name->instance, *caller_, Refusal::too_large, "the blob is larger than the server takes"));
         name_ = *name;
         first_ = request_.resource_name();
-        if (caller_.may(Role::read, name->instance)) {
-            const auto there = shared_.service.has_blob(caller_, name->instance, name->blob);
+        if (caller_->may(Role::read, name->instance)) {
+            const auto there = shared_.service.has_blob(*caller_, name->instance, name->blob);
             there_ = there.ok() && *there;
             if (there_) return grpc::Status::OK;
         }
         // The time of a whole upload, now that its size is known.
-        timer_.emplace(context_, time_for(shared_, name->blob.size));
+        timer_.emplace(&context_, time_for(shared_, name->blob.size));
         return grpc::Status::OK;
     }
 
@@ -144,6 +161,7 @@ private:
         leases_.push_back(std::move(*lease));
         const ByteView bytes = as_bytes(request_.data());
         received_.insert(received_.end(), bytes.begin(), bytes.end());
+        in_ = received_.size();
         return grpc::Status::OK;
     }
 
@@ -151,27 +169,26 @@ private:
         Bytes plain;
         if (name_->zstd) {
             auto lease = shared_.service.lease(name_->blob.size);
-            if (!lease.ok()) return Finish(status_of(lease.refused()));
+            if (!lease.ok()) return end(status_of(lease.refused()));
             leases_.push_back(std::move(*lease));
             if (zstd_unpack(received_, name_->blob.size, plain) != Unpacked::ok)
-                return Finish(invalid("the bytes are no zstd of that size"));
+                return end(invalid("the bytes are no zstd of that size"));
         }
-        const auto put = shared_.service.put_blob(caller_, name_->instance, name_->blob, name_->zstd ? plain : received_);
-        if (!put.ok()) return Finish(status_of(put.refused()));
+        const auto put = shared_.service.put_blob(*caller_, name_->instance, name_->blob, name_->zstd ? plain : received_);
+        if (!put.ok()) return end(status_of(put.refused()));
         finish(static_cast<int64_t>(received_.size()));
     }
 
     void finish(int64_t committed) {
-        response_->set_committed_size(committed);
-        Finish(grpc::Status::OK);
+        response_.set_committed_size(committed);
+        reader_.Finish(response_, ended(grpc::Status::OK), tag());
     }
 
-    CallContext& shared_;
-    grpc::CallbackServerContext* const context_;
-    const Caller caller_;
-    bs::WriteResponse* const response_;
-    std::optional<CallTimer> timer_;
+    StreamService& service_;
     bs::WriteRequest request_;
+    bs::WriteResponse response_;
+    grpc::ServerAsyncReader<bs::WriteResponse, bs::WriteRequest> reader_{&context_};
+    std::optional<CallTimer> timer_;
     std::optional<ResourceName> name_;
     std::string first_;
     bool there_ = false;
@@ -179,45 +196,37 @@ private:
     std::vector<Service::Lease> leases_;
 };
 
-class ByteStreamCalls final : public bs::ByteStream::CallbackService {
+class ByteStreamCalls final : public CallService {
 public:
     explicit ByteStreamCalls(CallContext& context) : shared_(context) {}
-
-    grpc::ServerWriteReactor<bs::ReadResponse>* Read(grpc::CallbackServerContext* context,
-                                                     const bs::ReadRequest* request) override {
-        return new ReadReactor(shared_, context, *request);
-    }
-
-    grpc::ServerReadReactor<bs::WriteRequest>* Write(grpc::CallbackServerContext* context, bs::WriteResponse* response) override {
-        return new WriteReactor(shared_, context, response);
-    }
-
-    // Uploads are not resumed: one that was cut off begins again, so a blob is there in whole or not at all.
-    grpc::ServerUnaryReactor* QueryWriteStatus(grpc::CallbackServerContext* context, const bs::QueryWriteStatusRequest* request,
-                                               bs::QueryWriteStatusResponse* out) override {
-        grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-        const auto name = parse_resource_name(request->resource_name());
-        if (!name || !name->upload) {
-            reactor->Finish(invalid("the resource name is none to write"));
-            return reactor;
-        }
-        const auto there = shared_.service.has_blob(shared_.caller(*context), name->instance, name->blob);
-        if (!there.ok()) {
-            reactor->Finish(status_of(there.refused()));
-            return reactor;
-        }
-        out->set_complete(*there);
-        out->set_committed_size(*there ? static_cast<int64_t>(name->blob.size) : 0);
-        reactor->Finish(grpc::Status::OK);
-        return reactor;
+    grpc::Service& service() override { return service_; }
+    void serve(grpc::ServerCompletionQueue& queue) override {
+        new ReadCall(shared_, queue, service_);
+        new WriteCall(shared_, queue, service_);
+        serve_unary(shared_, queue, "QueryWriteStatus", service_, &StreamService::RequestQueryWriteStatus,
+                    [this](const Caller& caller, const bs::QueryWriteStatusRequest& request, bs::QueryWriteStatusResponse& out) {
+                        return query(caller, request, out);
+                    });
     }
 
 private:
+    // Uploads are not resumed: one that was cut off begins again, so a blob is there in whole or not at all.
+    grpc::Status query(const Caller& caller, const bs::QueryWriteStatusRequest& request, bs::QueryWriteStatusResponse& out) {
+        const auto name = parse_resource_name(request.resource_name());
+        if (!name || !name->upload) return invalid("the resource name is none to write");
+        const auto there = shared_.service.has_blob(caller, name->instance, name->blob);
+        if (!there.ok()) return status_of(there.refused());
+        out.set_complete(*there);
+        out.set_committed_size(*there ? static_cast<int64_t>(name->blob.size) : 0);
+        return grpc::Status::OK;
+    }
+
     CallContext& shared_;
+    StreamService service_;
 };
 
 }  // namespace
 
-std::unique_ptr<grpc::Service> make_byte_stream(CallContext& context) { return std::make_unique<ByteStreamCalls>(context); }
+std::unique_ptr<CallService> make_byte_stream(CallContext& context) { return std::make_unique<ByteStreamCalls>(context); }
 
 }  // namespace kiln

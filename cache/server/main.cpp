@@ -225,8 +225,9 @@ int serve(const Config& config) {
         options.port = static_cast<uint16_t>(config.grpc_port);
         options.certificate = config.http.certificate;
         options.key = config.http.key;
+        options.work_threads = config.http.work_threads;
         auto started_grpc = GrpcServer::start(
-            service, [&] { return tokens.get(); }, options);
+            service, log, [&] { return tokens.get(); }, options);
         if (!started_grpc.ok()) return fail(started_grpc.error());
         grpc = std::move(*started_grpc);
         std::printf("grpc %s:%u\n", config.grpc_address.c_str(), grpc->port());

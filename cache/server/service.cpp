@@ -86,8 +86,8 @@ Service::BlobReads::~BlobReads() {
     if (service_ != nullptr && counts_.blob_hits + counts_.blob_misses != 0) service_->counters_.add(instance_.name, counts_);
 }
 
-Answer<std::optional<BlobFile>> Service::BlobReads::open(const Digest& key, bool* slow) {
-    auto file = service_->reader_of_blobs_.open(key, slow);
+Answer<std::optional<BlobFile>> Service::BlobReads::open(const Digest& key, bool* slow, uint64_t moment) {
+    auto file = service_->reader_of_blobs_.open(key, slow, moment);
     if (!file.ok()) return service_->failure(instance_, *caller_, file.error());
     if (slow != nullptr && *slow) return std::optional<BlobFile>();
     ++(file->has_value() ? counts_.blob_hits : counts_.blob_misses);

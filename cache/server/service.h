@@ -74,8 +74,8 @@ public:
     public:
         BlobReads(BlobReads&& other) noexcept;
         ~BlobReads();
-        // As blob().
-        Answer<std::optional<BlobFile>> open(const Digest& key, bool* slow = nullptr);
+        // As blob(); `moment` as BlobReader::open() has it.
+        Answer<std::optional<BlobFile>> open(const Digest& key, bool* slow = nullptr, uint64_t moment = BlobReader::moment);
 
     private:
         friend class Service;

@@ -1,7 +1,9 @@
 // kiln-cached's gRPC front as its clients meet it, well-behaved and not. Every refusal stands beside the call that passes.
 #include <bytestream.grpc.pb.h>
+#include <fcntl.h>
 #include <grpcpp/grpcpp.h>
 #include <gtest/gtest.h>
+#include <health.grpc.pb.h>
 #include <remote_execution.grpc.pb.h>
 #include <unistd.h>
 
@@ -51,7 +53,7 @@ protected:
         ASSERT_TRUE(parsed.ok());
         access_ = std::make_shared<const Access>(std::move(*parsed));
         auto server = GrpcServer::start(
-            *service_, [this] { return access_; }, options);
+            *service_, log_, [this] { return access_; }, options);
         ASSERT_TRUE(server.ok()) << server.error().message;
         server_ = std::move(*server);
         grpc::ChannelArguments arguments;
@@ -163,6 +165,9 @@ protected:
     std::unique_ptr<DiskStore> store_;
     std::unique_ptr<Service> service_;
     std::shared_ptr<const Access> access_;
+    const std::string log_file_ = folder_.path() + "-log";
+    Descriptor log_to_{::open(log_file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600)};
+    Log log_{log_to_.get(), LogLevel::requests};
     std::unique_ptr<GrpcServer> server_;
     std::shared_ptr<grpc::Channel> channel_;
     std::unique_ptr<re::ContentAddressableStorage::Stub> blobs_;
@@ -263,6 +268,33 @@ TEST_F(Grpc, ReadsBatchesWithinTheAnnouncedSize) {
     ASSERT_EQ(response.responses_size(), 41);
     for (int i = 0; i < 40; ++i) EXPECT_EQ(response.responses(i).data(), all[static_cast<size_t>(i)]);
     EXPECT_EQ(response.responses(40).status().code(), StatusCode::NOT_FOUND);
+    // A second time, from memory or a trusted file, and in a batch that is small enough not to leave the thread of the sockets.
+    for (const int count : {40, 3}) {
+        request.mutable_digests()->DeleteSubrange(count, request.digests_size() - count);
+        ASSERT_TRUE(blobs_->BatchReadBlobs(context().get(), request, &response).ok());
+        ASSERT_EQ(response.responses_size(), count);
+        for (int i = 0; i < count; ++i) {
+            EXPECT_EQ(response.responses(i).data(), all[static_cast<size_t>(i)]);
+            EXPECT_EQ(response.responses(i).digest().SerializeAsString(), request.digests(i).SerializeAsString());
+        }
+    }
+    // Sizes on both sides of what is copied and what is kept in memory, the empty blob, and one of another size than it has.
+    request.clear_digests();
+    all.clear();
+    for (const size_t size : {size_t{0}, size_t{1}, size_t{4095}, size_t{4096}, size_t{32'768}, size_t{32'769}}) {
+        all.push_back(std::string(size, 'k'));
+        ASSERT_EQ(put(digest(named(all.back())), all.back()), StatusCode::OK);
+        *request.add_digests() = digest(named(all.back()));
+    }
+    request.add_digests()->CopyFrom(digest({named(all[1]).digest, 2}));
+    for (int time = 0; time < 3; ++time) {
+        ASSERT_TRUE(blobs_->BatchReadBlobs(context().get(), request, &response).ok());
+        ASSERT_EQ(response.responses_size(), 7);
+        for (size_t i = 0; i < all.size(); ++i) EXPECT_TRUE(response.responses(static_cast<int>(i)).data() == all[i]);
+        EXPECT_EQ(response.responses(6).status().code(), StatusCode::NOT_FOUND);
+        std::this_thread::sleep_for(std::chrono::milliseconds(60));  // a file must be older than a tick to be trusted
+    }
+    EXPECT_EQ(service_->counters().total().blob_misses, 1u);  // the blob that was never stored
     request.add_digests()->CopyFrom(digest({named("x").digest, grpc_most_batch}));
     EXPECT_EQ(blobs_->BatchReadBlobs(context().get(), request, &response).error_code(), StatusCode::INVALID_ARGUMENT);
 }
@@ -535,17 +567,104 @@ TEST_F(Grpc, ServesManyAtOnce) {
     EXPECT_EQ(service_->in_flight(), 0u);
 }
 
+TEST_F(Grpc, LogsEveryCallWithoutItsToken) {
+    start({}, tokens);
+    as("cccccccccccccccccccc");
+    ASSERT_EQ(put(digest(named("a blob")), "a blob"), StatusCode::OK);
+    std::string out;
+    ASSERT_TRUE(upload({upload_name("main", "u", named("in a stream")), "in a stream"}).ok());
+    ASSERT_TRUE(download(read_name("main", named("in a stream")), out).ok());
+    re::BatchReadBlobsRequest read;
+    read.set_instance_name("main");
+    *read.add_digests() = digest(named("a blob"));
+    re::BatchReadBlobsResponse got;
+    ASSERT_TRUE(blobs_->BatchReadBlobs(context().get(), read, &got).ok());
+    as("a wrong token, logged?");
+    instance_ = "main\"\n{\"forged\":1}";
+    EXPECT_EQ(get_action(named("x")), StatusCode::UNAUTHENTICATED);
+    server_.reset();
+    log_.flush();
+    const std::string log = read_file(log_file_);
+    ::unlink(log_file_.c_str());
+    const auto lines = [&](const std::string& wanted) {
+        size_t count = 0;
+        for (size_t at = 0, end = 0; (end = log.find('\n', at)) != std::string::npos; at = end + 1)
+            count += log.substr(at, end - at).find(wanted) != std::string::npos ? 1 : 0;
+        return count;
+    };
+    EXPECT_EQ(lines(""), 5u) << log;
+    for (const char* method : {"BatchUpdateBlobs", "Write", "Read", "BatchReadBlobs"})
+        EXPECT_EQ(lines("\"caller\":\"ci\",\"method\":\"" + std::string(method) + "\",\"path\":\"main"), 1u) << method << log;
+    EXPECT_EQ(lines("\"method\":\"Read\",\"path\":\"" + read_name("main", named("in a stream")) +
+                    "\",\"grpc_status\":0,\"in\":0,\"out\":11"),
+              1u)
+        << log;
+    EXPECT_EQ(lines("\"caller\":\"nobody\",\"method\":\"GetActionResult\",\"path\":\"main\\\"\\u000a{"), 1u) << log;
+    EXPECT_EQ(lines("\"grpc_status\":16"), 1u) << log;
+    EXPECT_EQ(lines("\"peer\":\"127.0.0.1:"), 5u) << log;
+    EXPECT_EQ(log.find("cccccccc"), std::string::npos);
+    EXPECT_EQ(log.find("wrong token"), std::string::npos);
+}
+
+TEST_F(Grpc, SaysThatItIsWellAndWhatItDoesNotDo) {
+    start();
+    const auto health = grpc::health::v1::Health::NewStub(channel_);
+    grpc::health::v1::HealthCheckRequest ask;
+    grpc::health::v1::HealthCheckResponse state;
+    ASSERT_TRUE(health->Check(context().get(), ask, &state).ok());
+    EXPECT_EQ(state.status(), grpc::health::v1::HealthCheckResponse::SERVING);
+    ask.set_service("another");
+    EXPECT_EQ(health->Check(context().get(), ask, &state).error_code(), StatusCode::NOT_FOUND);
+    const auto execution = re::Execution::NewStub(channel_);
+    const auto held = context();
+    auto operations = execution->Execute(held.get(), {});
+    EXPECT_EQ(operations->Finish().error_code(), StatusCode::UNIMPLEMENTED);
+}
+
+// Calls that are under way when the server stops: those that can end do, the others are cut when patience is over.
+TEST_F(Grpc, DrainsItsCalls) {
+    start();
+    bs::WriteResponse response;
+    const auto held = context();
+    auto writer = streams_->Write(held.get(), &response);
+    bs::WriteRequest request;
+    request.set_resource_name(upload_name("main", "u", named("abc")));
+    request.set_data("a");
+    ASSERT_TRUE(writer->Write(request));
+    while (service_->in_flight() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    std::thread drain([&] { server_->drain(std::chrono::seconds(60)); });
+    request.set_data("bc");
+    request.set_write_offset(1);
+    request.set_finish_write(true);
+    EXPECT_TRUE(writer->Write(request));
+    EXPECT_TRUE(writer->Finish().ok());
+    drain.join();
+    EXPECT_TRUE(*service_->has_blob(Caller::trusted(), "main", named("abc")));
+
+    start();
+    const auto other = context();
+    writer = streams_->Write(other.get(), &response);
+    request.set_resource_name(upload_name("main", "u", named("xyz")));
+    request.set_write_offset(0);
+    request.set_finish_write(false);
+    ASSERT_TRUE(writer->Write(request));
+    while (service_->in_flight() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    server_->drain(std::chrono::seconds(0));
+    EXPECT_FALSE(writer->Finish().ok());
+    EXPECT_EQ(service_->in_flight(), 0u);
+}
+
 TEST_F(Grpc, AFrontThatCannotListenSaysSo) {
     start();
     GrpcOptions taken;
     taken.port = server_->port();
     EXPECT_FALSE(GrpcServer::start(
-                     *service_, [this] { return access_; }, taken)
+                     *service_, log_, [this] { return access_; }, taken)
                      .ok());
     GrpcOptions tls;
     tls.certificate = tls.key = folder_.path() + "/no such file";
     EXPECT_FALSE(GrpcServer::start(
-                     *service_, [this] { return access_; }, tls)
+                     *service_, log_, [this] { return access_; }, tls)
                      .ok());
 }
 

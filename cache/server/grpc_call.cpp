@@ -1,0 +1,122 @@
+#include "cache/server/grpc_call.h"
+
+#include <ctime>
+#include <exception>
+
+#include "cache/server/http_face.h"
+
+namespace kiln {
+
+namespace {
+
+// Of "ipv4:127.0.0.1:1234" or "ipv6:%5B::1%5D:1234".
+std::string address_of(std::string peer) {
+    peer.erase(0, peer.find(':') + 1);
+    for (const auto& [code, plain] : {std::pair("%5B", "["), std::pair("%5D", "]")})
+        if (const size_t at = peer.find(code); at != std::string::npos) peer.replace(at, 3, plain);
+    return peer;
+}
+
+}  // namespace
+
+std::shared_ptr<const Caller> CallContext::caller(const grpc::ServerContext& context) const {
+    std::shared_ptr<const Access> tokens = access();
+    const auto one = [&]() -> const Caller& {
+        const auto field = context.client_metadata().find("authorization");
+        if (field == context.client_metadata().end()) return tokens->anonymous();
+        const auto token = token_of({field->second.data(), field->second.size()});
+        return tokens->caller(token ? *token : " ", std::time(nullptr));  // no token holds a space
+    };
+    const Caller& found = one();
+    return {std::move(tokens), &found};
+}
+
+template <class Step>
+void Call::guarded(Step step) {
+    try {
+        step();
+    } catch (const std::exception& thrown) {  // memory
+        shared_.log.event(std::move(LogLine("failed").text("message", thrown.what())));
+        end({grpc::StatusCode::RESOURCE_EXHAUSTED, "the server is out of memory"});
+    }
+}
+
+void Call::on_event(bool ok) {
+    if (state_ == State::ends || (state_ == State::waits && !ok)) {
+        delete this;
+        return;
+    }
+    if (state_ == State::runs) return shared_.work.post([this, ok] { guarded([this, ok] { go_on(ok); }); });
+    state_ = State::runs;
+    wait_for_next();
+    began_ = std::chrono::steady_clock::now();
+    caller_ = shared_.caller(context_);
+    bool done = true;
+    guarded([&] { done = begin_at_once(); });
+    if (!done) shared_.work.post([this] { guarded([this] { begin(); }); });
+}
+
+const grpc::Status& Call::ended(const grpc::Status& status) {
+    state_ = State::ends;
+    if (!shared_.log.wants_requests()) return status;
+    const auto taken = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - began_).count();
+    shared_.log.request(std::move(LogLine("request")
+                                      .text("peer", address_of(context_.peer()))
+                                      .text("caller", caller_->name())
+                                      .text("method", method_)
+                                      .text("path", subject())
+                                      .number("grpc_status", static_cast<uint64_t>(status.error_code()))
+                                      .number("in", in_)
+                                      .number("out", out_)
+                                      .number("us", static_cast<uint64_t>(taken))));
+    return status;
+}
+
+grpc::Status status_of(const Refused& refused) {
+    const auto code = [&] {
+        switch (refused.why) {
+            case Refusal::bad_request:
+            case Refusal::unknown_instance:
+                return grpc::StatusCode::INVALID_ARGUMENT;
+            case Refusal::unauthenticated:
+                return grpc::StatusCode::UNAUTHENTICATED;
+            case Refusal::forbidden:
+                return grpc::StatusCode::PERMISSION_DENIED;
+            case Refusal::busy:
+                return grpc::StatusCode::UNAVAILABLE;
+            case Refusal::too_large:
+            case Refusal::full:
+                return grpc::StatusCode::RESOURCE_EXHAUSTED;
+            case Refusal::failed:
+                break;
+        }
+        return grpc::StatusCode::INTERNAL;
+    };
+    return {code(), refused.message};
+}
+
+grpc::Status invalid(const std::string& what) { return {grpc::StatusCode::INVALID_ARGUMENT, what}; }
+
+grpc::Status check_function(int digest_function) {
+    if (digest_function == reapi::DigestFunction::UNKNOWN || digest_function == reapi::DigestFunction::SHA256)
+        return grpc::Status::OK;
+    return invalid("this server speaks SHA-256 alone");
+}
+
+std::optional<BlobName> name_of(const reapi::Digest& digest) { return blob_name(digest.hash(), digest.size_bytes()); }
+
+CallTimer::CallTimer(grpc::ServerContext* context, std::chrono::seconds after) : shared_(std::make_shared<Shared>()) {
+    shared_->context = context;
+    // What the alarm calls belongs to gRPC until it has run, which the alarm's end makes happen at once.
+    alarm_.Set(std::chrono::system_clock::now() + after, [shared = shared_](bool expired) {
+        const std::lock_guard lock(shared->mutex);
+        if (expired && shared->context != nullptr) shared->context->TryCancel();
+    });
+}
+
+CallTimer::~CallTimer() {
+    const std::lock_guard lock(shared_->mutex);
+    shared_->context = nullptr;
+}
+
+}  // namespace kiln
