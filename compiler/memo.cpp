@@ -7,6 +7,7 @@
 // A damaged record reads as absent, so a memo can cost time but never give a wrong result.
 #include "compiler/memo.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 
@@ -251,12 +252,14 @@ bool read_split(WireReader& in, Split& split, Space& space, const std::string& f
     for (uint32_t& axis : split.axes_read) axis = in.u32();
     if (!read_diags(in, split.diags, folder)) return false;
     split.states = in.u64();
-    for (const Class& c : split.classes)
+    for (const Class& c : split.classes) {
+        if (static_cast<size_t>(std::count(c.text.begin(), c.text.end(), '\n')) != c.places.size()) in.fail();
         for (const TextPlace& p : c.places)
-            if (p.file >= split.files.size()) in.fail();
+            if (p.file >= split.files.size() || p.line == 0) in.fail();
+    }
     for (const uint32_t axis : split.axes_read)
         if (axis >= space.axes.size()) in.fail();
-    return in.ok() && in.at_end();
+    return in.ok() && in.at_end() && partition(split.classes, *space.diagram, space.needed);
 }
 
 }  // namespace kiln

@@ -27,7 +27,8 @@ Status remember(Store& store, Files& files, const std::string& folder, const Dig
 void write_diags(WireWriter& out, const Diags& diags, const std::string& folder);
 bool read_diags(WireReader& in, Diags& diags, const std::string& folder);
 
-// One stage's classes as bytes. `space` gives and checks the diagram.
+// One stage's classes as bytes. `space` gives and checks the diagram; what is read partitions its needed variants, and every line
+// of a class has a place in one of the files.
 void write_split(WireWriter& out, const Split& split, const Space& space, const std::string& folder);
 bool read_split(WireReader& in, Split& split, Space& space, const std::string& folder);
 

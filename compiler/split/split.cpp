@@ -95,6 +95,17 @@ std::string busiest_axes(const Space& space, const std::vector<Set>& sets, Set s
 
 }  // namespace
 
+bool partition(const std::vector<Class>& classes, Diagram& diagram, Set whole) {
+    // Together they are it, and their counts add up.
+    Set all = Diagram::none();
+    Count sum;
+    for (const Class& c : classes) {
+        all = diagram.either(all, c.variants);
+        sum += diagram.count(c.variants);
+    }
+    return all == whole && sum == diagram.count(whole);
+}
+
 Split split_stage(const Manifest& manifest, const Shader& shader, const StageFile& stage, Space& space, Set start, Files& files,
                   const SplitOptions& options) {
     Split out;
@@ -164,19 +175,10 @@ Split split_stage(const Manifest& manifest, const Shader& shader, const StageFil
                                           version.number >= (version.es ? 300 : 330));
         out.classes.push_back({groups[i].set, std::move(text.text), std::move(text.places)});
     }
-    if (!out.classes.empty()) {
-        // The classes partition the set: together they are it, and their counts add up.
-        Set all = Diagram::none();
-        Count sum;
-        for (const Class& c : out.classes) {
-            all = diagram.either(all, c.variants);
-            sum += diagram.count(c.variants);
-        }
-        if (all != start || sum != diagram.count(start)) {
-            assert(false && "classes do not partition the variants");
-            out.diags.error(stage.place, "internal error: the classes of " + stage.file + " do not partition its variants");
-            out.classes.clear();
-        }
+    if (!out.classes.empty() && !partition(out.classes, diagram, start)) {
+        assert(false && "classes do not partition the variants");
+        out.diags.error(stage.place, "internal error: the classes of " + stage.file + " do not partition its variants");
+        out.classes.clear();
     }
     return out;
 }
