@@ -93,11 +93,56 @@ assert d["work"]["compiled"] == d["work"]["translated"] == 0, d["work"]
 EOF
 [ -z "$(ls "$t/shared")" ] || fail "files were left in the shared folder"
 
-# A worker that fails on the nodes, and a cluster that does not exist: the table is the same, with one warning.
-printf '#!/bin/sh\nexit 9\n' >"$t/worker" && chmod +x "$t/worker"
-KILN_WORKER=$t/worker timeout 200 "$kiln" build manifests/sky_light.yaml -o "$t/away.kiln" --cache none --execute "slurm:$t/shared" 2>"$t/err" >/dev/null
-cmp "$t/home.kiln" "$t/away.kiln" || fail "another table after failing workers"
-[ "$(grep -c 'warning: ' "$t/err")" = 1 ] || fail "not one warning: $(cat "$t/err")"
-KILN_WORKER=/bin/true timeout 200 "$kiln" build manifests/sky_light.yaml -o "$t/away.kiln" --cache none --execute "slurm:$t/shared,--partition=nowhere" 2>"$t/err" >/dev/null
-cmp "$t/home.kiln" "$t/away.kiln" || fail "another table without a cluster"
+# The same table with one warning, whatever becomes of tasks: they fail, are killed, are lost with their array or their time, and a
+# cluster that is not there.
+real_worker=$(dirname "$kiln")/kiln-worker
+worker() { printf '#!/bin/sh\necho $$ >"%s/started"\n%s\n' "$t" "$1" >"$t/worker"; chmod +x "$t/worker"; rm -f "$t/started" "$t/err"; }
+build() { KILN_WORKER=$t/worker timeout 200 "$kiln" build manifests/sky_light.yaml -o "$t/away.kiln" --cache none --execute "slurm:$t/shared$1" "${@:2}" >"$t/out" 2>"$t/err"; }
+started() { for _ in $(seq 200); do [ -s "$t/started" ] && return; sleep 0.1; done; fail 'no worker was started'; }
+same() {
+  cmp "$t/home.kiln" "$t/away.kiln" || fail "$1: another table"
+  [ "$(grep -c 'warning: ' "$t/err")" = 1 ] && grep -q -- "$2" "$t/err" || fail "$1: not one warning that says '$2': $(cat "$t/err")"
+  rm "$t/away.kiln"
+}
+idle() {
+  for _ in $(seq 100); do [ -z "$(squeue -h)" ] && break; sleep 0.1; done
+  [ -z "$(squeue -h)" ] || fail "$1: still queued: $(squeue -h)"
+  [ -z "$(ls "$t/shared")" ] || fail "$1: files were left in the shared folder"
+}
+# The first step's task alone: what the other answered is used.
+once() { worker "test -e '$t/$1' || { : >'$t/$1'; $2; }; exec '$real_worker' \"\$@\""; }
+once failing 'echo no such thing >&2; exit 9'
+build '' --report-json "$t/r.json"
+same 'failing once' 'ended with 9: no such thing'
+python3 -c 'import json, sys; d = json.load(open(sys.argv[1])); assert d["work"]["compiled"] > 0 == d["work"]["translated"], d["work"]' "$t/r.json" || fail 'failing once'
+once killed 'kill -9 $PPID; exec sleep 600'
+build ''
+same 'a killed task' 'was lost before it ended'
+idle 'a killed task'
+# Somebody ends the array.
+once ended 'exec sleep 600'
+build '' &
+pid=$!
+started
+scancel --name=kiln
+wait $pid || fail 'a killed array'
+same 'a killed array' 'was lost before it ended'
+idle 'a killed array'
+once late 'exec sleep 600'
+build '' --execute-timeout 3
+same 'no time left' 'in time'
+idle 'no time left'
+# Ctrl-C: the array goes with the build.
+worker 'exec sleep 600'
+KILN_WORKER=$t/worker python3 -c '
+import os, signal, subprocess, sys, time
+p = subprocess.Popen(sys.argv[2:])
+while not os.path.exists(sys.argv[1]): time.sleep(0.1)
+p.send_signal(signal.SIGINT)
+sys.exit(0 if p.wait(60) == -signal.SIGINT else 1)' "$t/started" "$kiln" build manifests/sky_light.yaml -o "$t/away.kiln" --cache none --execute "slurm:$t/shared" 2>"$t/err" || fail 'interrupted: another end'
+[ ! -e "$t/away.kiln" ] || fail 'interrupted: a table'
+idle 'interrupted'
+worker 'exit 0'
+build ',--partition=nowhere'
+same 'no cluster' 'sbatch took no array.*nvalid partition'
 echo PASS
