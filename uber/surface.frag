@@ -74,7 +74,7 @@ const float shading_model = 0.0;
 #else
 const float shading_model = 1.0;
 #endif
-// Where no bake lights the object, the ambient light is here and the sky's comes later, in the deferred pass.
+// Where no bake lights the object, its irradiance is the ambient light's, in whose place an environment puts the sky's.
 #if LIGHTMAP != LIGHTMAP_NONE || PROBES != PROBES_NONE
 const float baked = 1.0;
 #else
@@ -83,16 +83,22 @@ const float baked = 0.0;
 
 layout(location = 0) out vec4 gbuffer_diffuse;     // rgb: diffuse reflectance; a: 0 Blinn-Phong, 1 GGX
 layout(location = 1) out vec4 gbuffer_specular;    // rgb: F0 or ks; a: perceptual roughness
-layout(location = 2) out vec2 gbuffer_normal;      // octahedral, [-1, 1]
-layout(location = 3) out vec4 gbuffer_radiance;    // rgb: what needs no light: indirect diffuse and emission; a: 1 baked, 0 not
+// Octahedral, [-1, 1]. xy: the shading normal; zw: the surface's without a normal map, the plane that receives shadows. Its four
+// bytes a pixel could be saved by differences of depth; but those are of one side's plane and another's at every edge between two
+// objects, are facets where normals are smooth, and have the depth's quantum over a pixel's width as their noise.
+layout(location = 2) out vec4 gbuffer_normal;
+// Indirect light and not what is reflected of it: how much the coat leaves for the base is known once the environment is.
+layout(location = 3) out vec4 gbuffer_irradiance;    // rgb: indirect irradiance / pi, W/(m2 sr); a: 1 baked, 0 not
+layout(location = 4) out vec4 gbuffer_radiance;      // rgb: emission, to which the deferred passes add; a: 1
 
 void main() {
     const vec3 n = shading_normal();
     const Shading s = sample_material();
     gbuffer_diffuse = vec4(s.diffuse, shading_model);
     gbuffer_specular = vec4(s.specular, s.roughness);
-    gbuffer_normal = encode_octahedral(n);
-    gbuffer_radiance = vec4(s.diffuse / pi * indirect_irradiance(world_position, n) + emissive, baked);
+    gbuffer_normal = vec4(encode_octahedral(n), encode_octahedral(geometric_normal()));
+    gbuffer_irradiance = vec4(indirect_irradiance(world_position, n) / pi, baked);
+    gbuffer_radiance = vec4(emissive, 1.0);
 }
 
 #else

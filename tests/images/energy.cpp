@@ -10,27 +10,6 @@
 namespace kiln::test {
 namespace {
 
-using reference::Texture2D;
-using reference::TextureWrap;
-
-Texture2D plain(double r, double g, double b) {
-    return {1, 1, {static_cast<float>(r), static_cast<float>(g), static_cast<float>(b), 1}, false, TextureWrap::repeat};
-}
-Texture2D plain(double v) { return plain(v, v, v); }
-
-// A material that takes nothing from the light but what its BRDF takes.
-void make_white(Scene& s, double base, double specular, double roughness, double metallic) {
-    s.maps.base_map = plain(base);
-    s.maps.specular_map = plain(specular);
-    s.maps.roughness_map = plain(roughness);
-    s.maps.gloss_map = plain(1 - roughness);
-    s.maps.metallic_map = plain(metallic);
-    s.blocks.base_factor = s.blocks.specular_factor = {1, 1, 1, 1};
-    s.blocks.roughness_factor = s.blocks.metallic_factor = s.blocks.glossiness_factor = 1;
-    s.blocks.emissive = {0, 0, 0};
-    s.blocks.ambient_irradiance = {0, 0, 0};
-}
-
 // One large square, seen from above by a camera that looks at the origin.
 Scene square(const V3& eye) {
     Scene s = scene(true, false);

@@ -223,6 +223,23 @@ Scene make_scene(bool directional, bool filtered) {
 
 }  // namespace
 
+Texture2D plain(double v) {
+    const float x = static_cast<float>(v);
+    return {1, 1, {x, x, x, 1}, false, TextureWrap::repeat};
+}
+
+void make_white(Scene& s, double base, double specular, double roughness, double metallic) {
+    s.maps.base_map = plain(base);
+    s.maps.specular_map = plain(specular);
+    s.maps.roughness_map = plain(roughness);
+    s.maps.gloss_map = plain(1 - roughness);
+    s.maps.metallic_map = plain(metallic);
+    s.blocks.base_factor = s.blocks.specular_factor = {1, 1, 1, 1};
+    s.blocks.roughness_factor = s.blocks.metallic_factor = s.blocks.glossiness_factor = 1;
+    s.blocks.emissive = {0, 0, 0};
+    s.blocks.ambient_irradiance = {0, 0, 0};
+}
+
 const Scene& scene(bool directional, bool filtered) {
     static std::map<std::pair<bool, bool>, Scene> made;
     auto found = made.find({directional, filtered});

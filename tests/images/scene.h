@@ -87,6 +87,13 @@ Mesh make_mesh();
 reference::SurfaceBlocks make_blocks(bool directional);
 Maps make_maps(const Mesh& mesh, bool directional, bool filtered);
 
+// One texel of grey.
+reference::Texture2D plain(double v);
+
+// A material that takes nothing from the light but what its BRDF takes, without emission or ambient light. specular: F0 or ks
+// where a material has a map of it.
+void make_white(Scene& s, double base, double specular, double roughness, double metallic);
+
 double f32(double x);
 V3 f32(const V3& v);
 M4 f32(const M4& m);

@@ -294,8 +294,9 @@ std::map<std::string, Expect> expectations(const Values& values, const Scene& fr
         using G = SurfaceGbuffer<Bounded>;
         out["output 0"] = part([four](const G& g) { return four(g.diffuse); });
         out["output 1"] = part([four](const G& g) { return four(g.specular); });
-        out["output 2"] = part([](const G& g) { return std::vector{g.normal.x, g.normal.y}; });
-        out["output 3"] = part([four](const G& g) { return four(g.radiance); });
+        out["output 2"] = part([four](const G& g) { return four(g.normal); });
+        out["output 3"] = part([four](const G& g) { return four(g.irradiance); });
+        out["output 4"] = part([four](const G& g) { return four(g.radiance); });
     }
     return out;
 }

@@ -62,9 +62,7 @@ Vec3<T> surface_radiance(const SurfaceAxes& axes, const SurfaceBlocks& b, const 
 
 template <class T>
 struct SurfaceGbuffer {
-    Vec4<T> diffuse, specular;
-    Vec2<T> normal;
-    Vec4<T> radiance;
+    Vec4<T> diffuse, specular, normal, irradiance, radiance;
 };
 
 template <class T, class Maps>
@@ -72,13 +70,15 @@ SurfaceGbuffer<T> surface_gbuffer(const SurfaceAxes& axes, const SurfaceBlocks& 
                                   bool front) {
     const Vec3<T> n = surface_normal(axes, maps, in, front);
     const SurfaceShading<T> s = surface_material(axes, b, maps, in.material_uv);
-    const Vec3<T> unlit = surface_diffuse(axes, s, surface_irradiance(axes, b, maps, in, n)) + read<T>(b.emissive);
+    const Vec3<T> irradiance = surface_irradiance(axes, b, maps, in, n) / T(pi), emissive = read<T>(b.emissive);
+    const Vec2<T> shading = encode_octahedral(n), geometric = encode_octahedral(geometric_normal(axes, in, front));
     const bool baked = axes.lightmap != SurfaceLightmap::none || axes.probes != SurfaceProbes::none;
     const T model(axes.material == SurfaceMaterial::blinn_phong ? 0 : 1);
     return {{s.diffuse.x, s.diffuse.y, s.diffuse.z, model},
             {s.specular.x, s.specular.y, s.specular.z, s.roughness},
-            encode_octahedral(n),
-            {unlit.x, unlit.y, unlit.z, T(baked ? 1 : 0)}};
+            {shading.x, shading.y, geometric.x, geometric.y},
+            {irradiance.x, irradiance.y, irradiance.z, T(baked ? 1 : 0)},
+            {emissive.x, emissive.y, emissive.z, T(1)}};
 }
 
 template <class T>
