@@ -49,6 +49,18 @@ NamedTexture study_texture(const Texture2D& from) {
                                 from.wrap() == TextureWrap::clamp ? Wrap::clamp : Wrap::repeat, Comparison::off}};
 }
 
+NamedTexture study_texture(const CubeArray& from) {
+    auto image = std::make_shared<ImageData>();
+    image->dim = ImageDim::cube;
+    image->width = image->height = static_cast<uint32_t>(from.side());
+    image->layers = 6;
+    image->mips = static_cast<uint32_t>(from.levels());
+    image->texels.resize(from.texels().size() * sizeof(float));
+    std::memcpy(image->texels.data(), from.texels().data(), image->texels.size());
+    return {image, SamplerState{from.linear() ? Filter::linear : Filter::nearest,
+                                from.linear() ? MipFilter::linear : MipFilter::nearest, Wrap::clamp, Comparison::off}};
+}
+
 Judged hold_study(const std::string& shader, const Values& values, const NamedInputs& inputs, const StudyPixel& expected,
                   double most_masked, const Edits& edits) {
     const Variant v = variant_of("library.yaml", shader, values, edits);
