@@ -55,11 +55,7 @@ DiskStore::Reading DiskStore::read(Keyspace space, const Digest& key, bool use) 
 
 Result<std::optional<Bytes>> DiskStore::load(Keyspace space, const Digest& key) {
     Reading got = read(space, key, true);
-    if (got.is == Reading::Is::damaged) {
-        std::string kept;
-        got = set_aside(space, key, kept);
-        if (got.is == Reading::Is::damaged) ++corrupt_;
-    }
+    if (got.is == Reading::Is::damaged) got = mended(space, key);
     if (got.is == Reading::Is::failed) return got.error;
     if (got.is != Reading::Is::whole) return std::optional<Bytes>();
     if (space == Keyspace::action) got.file.erase(got.file.begin(), got.file.begin() + action_head_size);
@@ -96,6 +92,17 @@ DiskStore::Reading DiskStore::set_aside(Keyspace space, const Digest& key, std::
         return got;
     bound_.forget(space, key, held->among_processes());
     trim_quarantine();
+    return got;
+}
+
+// What a damaged entry is after all; one that is still damaged was set aside, counted and told.
+DiskStore::Reading DiskStore::mended(Keyspace space, const Digest& key) {
+    Damage damage{path_of(space, key), {}, {}};
+    Reading got = set_aside(space, key, damage.kept);
+    if (got.is != Reading::Is::damaged) return got;
+    ++corrupt_;
+    damage.reason = got.reason;
+    if (on_damage) on_damage(damage);
     return got;
 }
 

@@ -96,11 +96,7 @@ Status DiskStore::put(Keyspace space, const Digest& key, ByteView bytes) {
         return refuse(environment_error("cache: a blob does not match its name " + key.hex()));
     const Bytes head = space == Keyspace::action ? action_head(key, bytes) : Bytes();
     Reading there = read(space, key, true);
-    if (there.is == Reading::Is::damaged) {
-        ++corrupt_;
-        std::string kept;
-        there = set_aside(space, key, kept);
-    }
+    if (there.is == Reading::Is::damaged) there = mended(space, key);
     if (there.is == Reading::Is::whole && same(there.file, head, bytes)) {
         ++already_there_;
         return {};
@@ -171,12 +167,19 @@ Status DiskStore::name_draft(Keyspace space, const Digest& key, const std::strin
                              named.st_dev == written.st_dev;
         if (code != 0 && !arrived) return io_error(path, "write", code);
     }
-    if (options_.sync != Sync::folder) return {};
+    return options_.sync == Sync::folder ? flush_names(space, key, new_shard) : Status();
+}
+
+// A shard that another process made may not have been flushed yet by it, so each process does that once for each shard.
+Status DiskStore::flush_names(Keyspace space, const Digest& key, bool new_shard) {
+    const std::string shard = fs::path(path_of(space, key)).parent_path();
     if (const int code = flush_folder(shard); code != 0) return io_error(shard, "flush", code);
-    if (!new_shard) return {};
+    std::atomic<bool>& flushed = shard_flushed_[(space == Keyspace::action ? 0u : 256u) + key.bytes[0]];
+    if (flushed && !new_shard) return {};
     for (std::string above = folder_ + "/" + folder_name(space); above.size() >= folder_.size();
          above = fs::path(above).parent_path())
         if (const int code = flush_folder(above); code != 0) return io_error(above, "flush", code);
+    flushed = true;
     return {};
 }
 

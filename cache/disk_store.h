@@ -14,7 +14,9 @@
 // Every read is verified: an entry that is truncated, altered or under a foreign name is quarantined, counted and treated as
 // absent. A disk that is full, read-only or slow makes put() an Error and loses nothing that was there.
 
+#include <array>
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -59,6 +61,9 @@ public:
     };
     using Shrunk = DiskBound::Shrunk;
 
+    // Called, on the thread that found it, for an entry that get() or put() met damaged. Set before the first of them.
+    std::function<void(const Damage&)> on_damage;
+
     // Creates the folder where it is missing. A folder that exists and cannot be written still serves reads.
     static Result<std::unique_ptr<DiskStore>> open(const std::string& folder, DiskOptions options = {});
     ~DiskStore() override;
@@ -89,8 +94,10 @@ private:
     Reading read(Keyspace space, const Digest& key, bool use) const;
     Result<std::optional<Bytes>> load(Keyspace space, const Digest& key);
     Reading set_aside(Keyspace space, const Digest& key, std::string& kept);
+    Reading mended(Keyspace space, const Digest& key);
     void trim_quarantine() const;
     Status publish(Keyspace space, const Digest& key, ByteView head, ByteView body);
+    Status flush_names(Keyspace space, const Digest& key, bool new_shard);
     Status name_draft(Keyspace space, const Digest& key, const std::string& draft, uint64_t size);
     void sweep_temporaries() const;
     int64_t now() const;
@@ -100,6 +107,8 @@ private:
     const DiskOptions options_;
     FolderLock lock_;
     DiskBound bound_;
+    // By keyspace and first byte: shards whose own names this process has flushed, whoever made them.
+    std::array<std::atomic<bool>, 512> shard_flushed_{};
     std::atomic<uint64_t> hits_{0}, misses_{0}, corrupt_{0}, written_{0}, already_there_{0}, evicted_{0}, failures_{0};
 };
 

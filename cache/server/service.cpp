@@ -38,7 +38,17 @@ Service::Service(DiskStore& store, Instances instances, ServiceLimits limits, Ac
       instances_(std::move(instances)),
       limits_(limits),
       reader_(std::move(reader)),
-      reader_of_blobs_(store, verify_again_after) {}
+      reader_of_blobs_(store, verify_again_after) {
+    store_.on_damage = [this](const DiskStore::Damage& damage) {
+        const std::string where = damage.kept.empty() ? "it could not be moved" : "it is now " + damage.kept;
+        tell({std::time(nullptr), "damage", "", "", damage.path + ": " + damage.reason + "; " + where});
+    };
+}
+
+void Service::tell(Event event) {
+    if (on_event) on_event(event);
+    counters_.event(std::move(event));
+}
 
 Refused Service::refuse(std::string_view instance, const Caller& caller, Refusal why, std::string message) {
     Counts counts;
@@ -46,11 +56,8 @@ Refused Service::refuse(std::string_view instance, const Caller& caller, Refusal
     // A name that is no instance's is not counted under itself.
     counters_.add(why == Refusal::unknown_instance || why == Refusal::unauthenticated ? std::string() : std::string(instance),
                   counts);
-    if (why == Refusal::failed || why == Refusal::full) {
-        Event event{std::time(nullptr), name_of(why), std::string(instance), caller.name(), message};
-        if (on_event) on_event(event);
-        counters_.event(std::move(event));
-    }
+    if (why == Refusal::failed || why == Refusal::full)
+        tell({std::time(nullptr), name_of(why), std::string(instance), caller.name(), message});
     return {why, std::move(message)};
 }
 
@@ -224,10 +231,8 @@ Answer<Written> Service::store_action(const Caller& caller, const Instance& inst
     }
     if (there && !replace) {
         counters_.add(instance.name, one(&Counts::conflicts));
-        Event event{std::time(nullptr), "conflict", instance.name, caller.name(),
-                    "another value for an action that has one; the first stays"};
-        if (on_event) on_event(event);
-        counters_.event(std::move(event));
+        tell({std::time(nullptr), "conflict", instance.name, caller.name(),
+              "another value for an action that has one; the first stays"});
         return Written::kept_first;
     }
     const Status kept = store_.put(Keyspace::action, name, bytes);

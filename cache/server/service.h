@@ -52,8 +52,12 @@ enum class Written {
 
 class Service {
 public:
-    // `store` outlives the service.
+    // `store` outlives the service, which hears of its damage; one service a store.
     Service(DiskStore& store, Instances instances, ServiceLimits limits, ActionReader reader, int64_t verify_again_after = 600);
+
+    ~Service() { store_.on_damage = nullptr; }
+    Service(const Service&) = delete;
+    Service& operator=(const Service&) = delete;
 
     const ServiceLimits& limits() const { return limits_; }
     const Instances& instances() const { return instances_; }
@@ -134,6 +138,7 @@ private:
         bool incomplete = false;
     };
     Answer<Lease> lease(uint64_t bytes, std::atomic<uint64_t>& of);
+    void tell(Event event);
     Refused failure(const Instance& instance, const Caller& caller, const Error& error);
     Result<Found> own_action(const Instance& instance, const std::string& name, const Digest& key);
     Result<bool> complete(ByteView action);

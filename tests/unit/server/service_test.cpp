@@ -222,6 +222,55 @@ TEST(Service, TheFirstWholeValueStays) {
     EXPECT_EQ(s.get(reader, "", "key"), naming("one"));
 }
 
+TEST(Service, DamageIsAnEvent) {
+    Served s;
+    std::vector<Event> seen;
+    s->on_event = [&](const Event& event) { seen.push_back(event); };
+    s.put("a blob");
+    EXPECT_EQ(s.set(writer, "ccache", "key", "value"), "now");
+    EXPECT_TRUE(s->blob(reader, "", name_of("a blob"))->has_value());
+    EXPECT_TRUE(seen.empty()) << "the control";
+    const std::string paths[] = {s.store->path_of(Keyspace::blob, name_of("a blob")),
+                                 s.store->path_of(Keyspace::action, action_name("ccache", name_of("key")))};
+    for (const std::string& path : paths) write_file(path, read_file(path) + "more");
+    EXPECT_FALSE(s->blob(reader, "", name_of("a blob"))->has_value());
+    EXPECT_EQ(s.get(reader, "ccache", "key"), "absent");
+    ASSERT_EQ(seen.size(), 2u);
+    for (size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(seen[i].kind, "damage");
+        EXPECT_NE(seen[i].message.find(paths[i] + ": "), std::string::npos) << seen[i].message;
+        EXPECT_NE(seen[i].message.find("/quarantine/"), std::string::npos) << seen[i].message;
+    }
+    EXPECT_EQ(s->counters().recent().size(), 2u);
+    EXPECT_FALSE(s->blob(reader, "", name_of("a blob"))->has_value());
+    EXPECT_EQ(seen.size(), 2u) << "once for each";
+}
+
+TEST(Service, ReadingAnActionRenewsItsBlobs) {
+    Served s;
+    s.put("one");
+    s.put("leaf");
+    const std::string tree = naming("leaf"), value = naming("one") + "tree " + naming(tree);
+    s.put(tree);
+    s.put("not named");
+    EXPECT_EQ(s.set(writer, "", "key", value), "now");
+    const auto age = [&](std::string_view blob) {
+        std::filesystem::last_write_time(s.store->path_of(Keyspace::blob, name_of(blob)),
+                                         std::filesystem::file_time_type::clock::now() - std::chrono::hours(9));
+    };
+    const auto is_old = [&](std::string_view blob) {
+        return std::filesystem::file_time_type::clock::now() -
+                   std::filesystem::last_write_time(s.store->path_of(Keyspace::blob, name_of(blob))) >
+               std::chrono::hours(8);
+    };
+    const std::string_view blobs[] = {"one", "leaf", tree, "not named"};
+    for (const std::string_view blob : blobs) age(blob);
+    EXPECT_EQ(s.get(reader, "", "another key"), "absent");
+    for (const std::string_view blob : blobs) EXPECT_TRUE(is_old(blob)) << blob << ", the control";
+    EXPECT_EQ(s.get(reader, "", "key"), value);
+    for (const std::string_view blob : blobs) EXPECT_EQ(is_old(blob), blob == "not named") << blob;
+}
+
 TEST(Service, OpaqueInstancesTakeAnythingAndTheLastWins) {
     Served s;
     EXPECT_EQ(s.set(writer, "ccache", "key", "\x01 no action"), "now");
