@@ -6,6 +6,7 @@
 #include <charconv>
 #include <functional>
 #include <limits>
+#include <set>
 
 namespace kiln {
 
@@ -123,6 +124,8 @@ const std::vector<std::pair<std::string_view, Take>>& table() {
         {"timeouts.body", [](auto v, Config& c) { return seconds(v, c.http.body_timeout); }},
         {"timeouts.write", [](auto v, Config& c) { return seconds(v, c.http.write_timeout); }},
         {"timeouts.idle", [](auto v, Config& c) { return seconds(v, c.http.idle_timeout); }},
+        {"timeouts.patience", [](auto v, Config& c) { return seconds(v, c.http.patience); }},
+        {"limits.slowest", [](auto v, Config& c) { return size(v, c.http.slowest, 1); }},
         {"timeouts.drain", [](auto v, Config& c) { return seconds(v, c.drain); }},
         {"threads.io", [](auto v, Config& c) { return number(v, c.http.io_threads, 1, 64); }},
         {"threads.work", [](auto v, Config& c) { return number(v, c.http.work_threads, 0, 256); }},
@@ -134,8 +137,10 @@ const std::vector<std::pair<std::string_view, Take>>& table() {
     return rows;
 }
 
-// "instances.3.opaque": the rule that the number names, made when it is the next one.
-Status apply_instance(std::string_view name, std::string_view value, std::vector<InstanceRule>& rules, bool first) {
+// "instances.3.opaque": the rule that the number names, made when it is the next one. `told`: those whose `replace` was said,
+// before or after their `opaque`.
+Status apply_instance(std::string_view name, std::string_view value, std::vector<InstanceRule>& rules, bool first,
+                      std::set<uint64_t>& told) {
     const size_t dot = name.find('.');
     if (dot == std::string_view::npos) return input_error("instances are a list of maps with a name");
     const auto index = parse_number(name.substr(0, dot), 0, 9999);
@@ -155,10 +160,14 @@ Status apply_instance(std::string_view name, std::string_view value, std::vector
     }
     if (key == "opaque") {
         KILN_TRY(yes_or_no(value, rule.opaque));
-        rule.replace = rule.replace || rule.opaque;  // what writes opaque values (ccache's manifests) writes them anew
+        if (!told.contains(*index))
+            rule.replace = rule.opaque;  // what writes opaque values (ccache's manifests) writes them anew
         return {};
     }
-    if (key == "replace") return yes_or_no(value, rule.replace);
+    if (key == "replace") {
+        told.insert(*index);
+        return yes_or_no(value, rule.replace);
+    }
     return input_error("is no key of an instance: name, parent, opaque, replace");
 }
 
@@ -197,6 +206,7 @@ bool is_loopback(std::string_view address) { return address == "::1" || address.
 
 Status apply(const std::vector<Setting>& settings, Config& config) {
     bool first_instance = true;
+    std::set<uint64_t> told_replace;
     for (const Setting& setting : settings) {
         const auto wrong = [&](const std::string& what) {
             const std::string where =
@@ -206,7 +216,7 @@ Status apply(const std::vector<Setting>& settings, Config& config) {
         constexpr std::string_view list = "instances.";
         if (setting.name.substr(0, list.size()) == list) {
             const Status done = apply_instance(std::string_view(setting.name).substr(list.size()), setting.value,
-                                               config.instances, first_instance);
+                                               config.instances, first_instance, told_replace);
             if (!done.ok()) return wrong(done.error().message);
             first_instance = false;
             continue;

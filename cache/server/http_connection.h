@@ -111,6 +111,14 @@ private:
     using Clock = std::chrono::steady_clock;
 
     void deadline(std::chrono::milliseconds after) { beast::get_lowest_layer(stream_).expires_after(after); }
+    // Of a piece, and no later than that of the whole, which whole() sets.
+    void deadline_of_piece(std::chrono::milliseconds after) {
+        beast::get_lowest_layer(stream_).expires_at(std::min(Clock::now() + after, whole_until_));
+    }
+    void whole(uint64_t bytes) {
+        const uint64_t slowest = std::max<uint64_t>(1, shared_.options.slowest);
+        whole_until_ = Clock::now() + shared_.options.patience + std::chrono::seconds(bytes / slowest);
+    }
 
     // `what` failed: a deadline in the middle of a request is counted, a client that went away is nothing.
     void gone(beast::error_code failed, bool under_way) {
@@ -178,7 +186,8 @@ private:
         length_ = check.head.length;
         unread_ = !length_ || *length_ != 0;
         if (refused) return respond(std::move(*refused));
-        deadline(shared_.options.body_timeout);
+        whole(length_ ? *length_ : work_.most);
+        deadline_of_piece(shared_.options.body_timeout);
         renewed_at_ = 0;
         if (!unread_) return on_body();
         if (!check.expects_continue || buffer_.size() != 0) return read_body();
@@ -212,7 +221,7 @@ private:
     void renew_deadline() {
         if (filled_ - renewed_at_ < piece) return;
         renewed_at_ = filled_;
-        deadline(shared_.options.body_timeout);
+        deadline_of_piece(shared_.options.body_timeout);
     }
 
     void read_body() {
@@ -320,7 +329,10 @@ private:
         head_ = response_head(response_, close_);
         sent_ = 0;
         to_send_ = work_.method == Method::head ? 0 : response_.length();
-        if (!send_at_once()) return write_some(true);
+        if (!send_at_once()) {
+            whole(to_send_);
+            return write_some(true);
+        }
         // What stands in the buffer already is answered from the loop, not from here, or many small requests would nest.
         if (buffer_.size() == 0) return on_sent();
         net::post(stream_.get_executor(), [self = this->shared_from_this()] { self->on_sent(); });
@@ -370,7 +382,7 @@ private:
             }
             from = part_.data();
         }
-        deadline(shared_.options.write_timeout);
+        deadline_of_piece(shared_.options.write_timeout);
         const auto written = [self = this->shared_from_this(), n](beast::error_code failed, size_t) {
             if (failed) return self->gone(failed, true);
             self->sent_ += n;
@@ -451,7 +463,7 @@ private:
     uint64_t sent_ = 0, to_send_ = 0;
     bool unread_ = false;  // bytes of this request may still come
     bool keep_alive_ = false, close_ = false;
-    Clock::time_point began_{};
+    Clock::time_point began_{}, whole_until_{};
     beast::error_code ignored_;
 };
 

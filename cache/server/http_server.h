@@ -1,7 +1,8 @@
 #pragma once
 // The sockets of the HTTP front: accepting, TLS, limits, deadlines, draining. What a request means is HttpFace's.
 //
-// Promises: a client that is slow at its head, its body or at reading costs one connection for no longer than its deadline;
+// Promises: a client that is slow at its head, its body or at reading costs one connection for no longer than its deadline,
+// which for a body or a response grows with its bytes and not with its patience;
 // memory for bodies grows with what has arrived, not with what was announced; a request whose end is in doubt (two lengths, a
 // length and a transfer coding, an unknown coding) is refused and its connection closed; more connections than the cap are
 // answered 503; running out of descriptors stops accepting for a moment and nothing else.
@@ -26,6 +27,9 @@ struct HttpOptions {
     unsigned io_threads = 1, work_threads = 4;
     uint32_t header_bytes = 16 * 1024;
     size_t connections = 4096;
+    // A body, or a response, may take in all: `patience`, and its bytes at `slowest` a second.
+    std::chrono::milliseconds patience{60'000};
+    uint64_t slowest = 64 * 1024;
     // head: of a request, once it has begun, and of a TLS handshake. body and write: for each 64 KiB. idle: between requests.
     std::chrono::milliseconds head_timeout{10'000}, body_timeout{20'000}, write_timeout{20'000}, idle_timeout{60'000};
 };

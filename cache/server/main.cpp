@@ -2,8 +2,11 @@
 // certificates again.
 #include <malloc.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <cstdio>
 #include <ctime>
@@ -39,6 +42,7 @@ Settings come from FILE (YAML) and from flags of the same names, which win:
   --limits.blob SIZE  --limits.action SIZE  --limits.opaque_action SIZE  --limits.in_flight SIZE
   --limits.connections N  --limits.header BYTES  --threads.io N  --threads.work N (0: none)
   --timeouts.head S  --timeouts.body S  --timeouts.write S  --timeouts.idle S  --timeouts.drain S
+  --timeouts.patience S  --limits.slowest SIZE   a body or a reply may take S seconds and its bytes at SIZE a second (60, 64KiB)
   --verify_again S        a blob read again within S seconds and unchanged on disk is not hashed anew (600)
   --check                 read the settings and the token file, say what is wrong, and end
   --help  --version
@@ -117,6 +121,22 @@ private:
     std::thread thread_;  // last: it uses the others
 };
 
+// Raises the soft limit of descriptors as far as needed and allowed, and says how many HTTP connections fit: each may have a file
+// open beside its socket, and the store, the index and gRPC need theirs whatever these do.
+size_t connections_that_fit(size_t wanted) {
+    constexpr rlim_t for_grpc = 4096, reserve = 256;
+    rlimit files{};
+    if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return wanted;
+    const rlim_t need = rlim_t{2} * wanted + for_grpc + reserve;
+    if (files.rlim_cur < need) {
+        files.rlim_cur = std::min(need, files.rlim_max);
+        (void)::setrlimit(RLIMIT_NOFILE, &files);
+        (void)::getrlimit(RLIMIT_NOFILE, &files);
+    }
+    const rlim_t kept = std::min(reserve, files.rlim_cur / 2);
+    return static_cast<size_t>(std::clamp<rlim_t>((files.rlim_cur - kept) / 2, 1, wanted));
+}
+
 int fail(const Error& error) {
     std::fprintf(stderr, "kiln-cached: %s\n", error.message.c_str());
     return static_cast<int>(error.fault);
@@ -192,7 +212,7 @@ int serve(const Config& config) {
             LogLine(event.kind).text("instance", event.instance).text("caller", event.caller).text("message", event.message)));
     };
     const DiskWatch watch(**store);
-    HttpServer* http_now = nullptr;
+    std::atomic<HttpServer*> http_now{nullptr};  // pages may be asked for from the moment that it listens
     const auto facts = [&] {
         ServerFacts f;
         f.version = KILN_VERSION;
@@ -207,14 +227,16 @@ int serve(const Config& config) {
         f.in_flight = service.in_flight();
         f.answering = service.answering();
         f.hashed = service.hashed();
-        if (http_now != nullptr) f.http = http_now->stats();
+        if (const HttpServer* server = http_now) f.http = server->stats();
         return f;
     };
     HttpFace face(service, [&] { return tokens.get(); },
                   {[&] { return status_page(facts()); }, [&] { return metrics_page(facts()); }});
 
     // --- the fronts: each listens from here on; whoever waits for the lines below may connect ---
-    auto http = HttpServer::start(face, log, config.http);
+    HttpOptions http_options = config.http;
+    http_options.connections = connections_that_fit(config.http.connections);
+    auto http = HttpServer::start(face, log, http_options);
     if (!http.ok()) return fail(http.error());
     http_now = http->get();
     std::printf("http %s:%u\n", config.http.address.c_str(), (*http)->port());
@@ -226,6 +248,8 @@ int serve(const Config& config) {
         options.certificate = config.http.certificate;
         options.key = config.http.key;
         options.work_threads = config.http.work_threads;
+        options.patience = std::chrono::ceil<std::chrono::seconds>(config.http.patience);
+        options.slowest = config.http.slowest;
         auto started_grpc = GrpcServer::start(
             service, log, [&] { return tokens.get(); }, options);
         if (!started_grpc.ok()) return fail(started_grpc.error());
@@ -237,6 +261,7 @@ int serve(const Config& config) {
                             .text("version", KILN_VERSION)
                             .text("address", config.http.address)
                             .number("port", (*http)->port())
+                            .number("connections", http_options.connections)
                             .text("tls", config.http.certificate.empty() ? "no" : "yes")
                             .number("tokens", tokens.get()->tokens())));
 
@@ -260,8 +285,12 @@ int serve(const Config& config) {
         if (!tls.ok()) line.text("tls_kept", tls.error().message);
         log.event(std::move(line));
     }
+    // Both at once: neither takes anything new from here on, and the whole lasts no longer than one of them may.
+    std::thread grpc_drain([&] {
+        if (grpc) grpc->drain(std::chrono::ceil<std::chrono::seconds>(config.drain));
+    });
     const bool all = (*http)->drain(config.drain);
-    if (grpc) grpc->drain(std::chrono::duration_cast<std::chrono::seconds>(config.drain));
+    grpc_drain.join();
     log.event(std::move(LogLine("stopped").text("drained", all ? "yes" : "no")));
     return 0;
 }

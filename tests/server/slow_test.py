@@ -210,6 +210,69 @@ def drains(binary):
         check(server.blob_path(key(BLOB)).read_bytes() == BLOB, "the blob is not on disk")
 
 
+def trickles(binary):
+    """A body that comes, and a reply that is read, in time for each piece but far too slowly as a whole."""
+    large = bytes(24 << 20)
+    head = f"PUT /cas/{'a' * 64} HTTP/1.1\r\nHost: h\r\nContent-Length: {len(large)}\r\n\r\n".encode()
+    with Cached(binary, timeouts_patience="500ms", limits_slowest="24MiB") as strict, Cached(binary) as lenient:
+        for server in (strict, lenient):
+            equal(server.put(large), 201, "positive control: 24 MiB")
+        writers = [server.connect() for server in (strict, lenient)]
+        for s in writers:
+            s.sendall(head)
+        for _ in range(400):
+            writers[1].sendall(bytes(70_000))
+            if ended(writers[0], seconds=0.05):
+                break
+            try:
+                writers[0].sendall(bytes(70_000))
+            except OSError:
+                break
+        else:
+            raise Failed("a body of 24 MiB in small pieces goes on for ever")
+        check(not readable(writers[1], 0.1), "the control: without the setting this body would not have been ended")
+        reader = socket.socket()
+        reader.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        reader.connect(("127.0.0.1", strict.port))
+        reader.sendall(f"GET /cas/{key(large)} HTTP/1.1\r\nHost: h\r\n\r\n".encode())
+        got = 0
+        ended_by_deadline = lambda: b"kiln_cached_http_timeouts_total 2" in strict.call("GET", "/metrics").body
+        for _ in range(400):
+            got += len(reader.recv(20_000))
+            if ended_by_deadline():
+                break
+            threading.Event().wait(0.02)
+        while part := reader.recv(1 << 20):
+            got += len(part)
+        check(got < len(large), f"a reader of 20 KB now and then got all {got} bytes")
+        for s in (*writers, reader):
+            s.close()
+
+
+def drains_both(binary):
+    """At SIGTERM both fronts stop taking connections at once, while HTTP still has a request under way."""
+    with Cached(binary, grpc="127.0.0.1:0") as server:
+        grpc = int(server.process.stdout.readline().decode().rsplit(":", 1)[1])
+        busy = server.connect()
+        busy.sendall(PUT + BLOB[:1000])
+        equal(server.get(BLOB).status, 404, "not yet there")
+        socket.create_connection(("127.0.0.1", grpc), 20).close()
+        server.process.send_signal(signal.SIGTERM)
+        for port in (server.port, grpc):
+            for _ in range(400):
+                try:
+                    socket.create_connection(("127.0.0.1", port), 20).close()
+                except ConnectionRefusedError:
+                    break
+                threading.Event().wait(0.02)
+            else:
+                raise Failed("a front takes connections while the server drains")
+        check(server.process.poll() is None, "the server did not wait for the body")
+        busy.sendall(BLOB[1000:])
+        check(statuses(busy.recv(65536)) == [201], "the request under way was cut")
+        equal(server.process.wait(30), 0, "exit code")
+
+
 def drain_has_an_end(binary):
     with Cached(binary, timeouts_drain="300ms") as server:
         s = server.connect()
@@ -220,4 +283,4 @@ def drain_has_an_end(binary):
 
 
 if __name__ == "__main__":
-    main([deadlines, caps, announced_memory, unwanted_bodies, unread_records, in_flight, goes_away, drains, drain_has_an_end])
+    main([deadlines, caps, announced_memory, unwanted_bodies, unread_records, in_flight, goes_away, drains, trickles, drains_both, drain_has_an_end])

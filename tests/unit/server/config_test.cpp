@@ -56,6 +56,27 @@ TEST(Config, AFile) {
     EXPECT_EQ(config.disk.limit, 1'000'000'000u);
 }
 
+TEST(Config, AnInstancesKeysHaveNoOrder) {
+    const struct {
+        const char* keys;
+        bool replace;
+    } rows[] = {{"opaque: true", true},
+                {"opaque: false", false},
+                {"replace: true", true},
+                {"opaque: true, replace: false", false},
+                {"replace: false, opaque: true", false},
+                {"opaque: false, replace: true", true},
+                {"replace: true, opaque: false", true}};
+    for (const auto& row : rows) {
+        const auto settings = settings_of(std::string("instances: [{name: a, ") + row.keys + "}, {name: b, opaque: true}]");
+        ASSERT_TRUE(settings.ok()) << settings.error().message;
+        Config config;
+        ASSERT_TRUE(apply(*settings, config).ok());
+        EXPECT_EQ(config.instances.at(0).replace, row.replace) << row.keys;
+        EXPECT_TRUE(config.instances.at(1).replace) << "what was said of another";
+    }
+}
+
 TEST(Config, Mistakes) {
     const std::pair<std::string, std::string> rows[] = {
         {"", "no folder"},
