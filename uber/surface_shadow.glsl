@@ -77,12 +77,16 @@ float light_visibility(vec3 position, vec3 n, vec3 l) {
 #elif CASCADES > 1
     const float depth = (view_projection * vec4(position, 1.0)).w;
     const CascadeChoice choice = choose_cascade(depth, cascade_start, cascade_ends, CASCADES, cascade_band);
+    const int own = max(choice.index, 0), next = max(choice.next, 0);
 #if SHADOW == SHADOW_HARD
-    const vec3 receiver = offset_shadow_receiver(position, n, dot(n, l), cascade_texel[max(choice.index, 0)]);
-    return cascaded_shadow(cascade_maps, cascade_view_projection, cascade_bias, receiver, choice);
+    const vec4 receiver = vec4(offset_shadow_receiver(position, n, dot(n, l), cascade_texel[own]), 1.0);
+    return cascaded_shadow(cascade_maps, cascade_view_projection[own] * receiver, cascade_view_projection[next] * receiver,
+                           vec2(cascade_bias[own], cascade_bias[next]), choice);
 #else
-    return cascaded_pcf(cascade_maps, cascade_view_projection, cascade_plane_of_world, cascade_filter, cascade_texel_uv,
-                        cascade_quantum, position, n, choice, PCF_TAPS);
+    const vec4 receiver = vec4(position, 1.0), plane = vec4(n, -dot(n, position));
+    return cascaded_pcf(cascade_maps, cascade_view_projection[own] * receiver, cascade_plane_of_world[own] * plane,
+                        cascade_view_projection[next] * receiver, cascade_plane_of_world[next] * plane,
+                        vec2(cascade_filter[own], cascade_filter[next]), cascade_texel_uv, cascade_quantum, choice, PCF_TAPS);
 #endif
 #elif LIGHT_TYPE == LIGHT_POINT && SHADOW == SHADOW_HARD
     const vec3 away = abs(position - light_position);

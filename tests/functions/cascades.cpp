@@ -67,12 +67,39 @@ TEST(Functions, Cascades) {
         },
         number("x", linear(-2, 2)), number("y", linear(-2, 2)), number("z", linear(-0.5, 2)),
         number("w", linear(-0.5, 2).also({0})), integer("layer", 0, 3));
+    cascades.texture("sampler2DArray depths", texture.image(true, false), nearest(false));
+    const auto factor = [compare](auto x, auto y, auto z, auto w, int layer) {
+        using T = decltype(x);
+        return cascade_factor(compare, Vec4<T>{x, y, z, w}, layer, T(1e-4));
+    };
+    cascades.test("cascade_factor_gathered(maps, vec4(x, y, z, w), layer, 1e-4)", factor, number("x", linear(-2, 2)),
+                  number("y", linear(-2, 2)), number("z", linear(-0.5, 2)), number("w", linear(-0.5, 2).also({0})),
+                  integer("layer", 0, 3));
+    cascades.test("cascade_factor_fetched(depths, vec4(x, y, z, w), layer, 1e-4)", factor, number("x", linear(-2, 2)),
+                  number("y", linear(-2, 2)), number("z", linear(-0.5, 2)), number("w", linear(-0.5, 2).also({0})),
+                  integer("layer", 0, 3));
+    cascades.test(
+        "cascade_factor_gathered_linear(maps, vec4(x, y, z, w), layer, 1e-4)",
+        [&texture](auto x, auto y, auto z, auto w, int layer) {
+            using T = decltype(x);
+            const auto texel = [&texture](int of, int i, int j, const T& depth) {
+                const int last = texture.size - 1;
+                const size_t at =
+                    static_cast<size_t>((of * texture.size + std::clamp(j, 0, last)) * texture.size + std::clamp(i, 0, last));
+                return depth <= T(static_cast<double>(texture.depths[at])) ? T(1) : T(0);
+            };
+            return cascade_factor_gathered_linear(texel, texture.size, Vec4<T>{x, y, z, w}, layer, T(1e-4));
+        },
+        number("x", linear(-2, 2)), number("y", linear(-2, 2)), number("z", linear(-0.5, 2)),
+        number("w", linear(-0.5, 2).also({0})), integer("layer", 0, 3));
     static const Matrices matrices("matrices", cascade_matrix);
     cascades.declare(matrices.glsl);
     cascades
         .test(
-            "cascaded_shadow(maps, matrices, vec4(1e-4, 2e-4, 3e-4, 4e-4), receiver, choose_cascade(depth, 0.1, vec4(10.0, 20.0, "
-            "30.0, 40.0), 4, 0.2))",
+            "CascadeChoice c = choose_cascade(depth, 0.1, vec4(10.0, 20.0, 30.0, 40.0), 4, 0.2); int own = max(c.index, 0), next "
+            "= "
+            "max(c.next, 0); vec4 bias = vec4(1e-4, 2e-4, 3e-4, 4e-4); result = cascaded_shadow(maps, matrices[own] * "
+            "vec4(receiver, 1.0), matrices[next] * vec4(receiver, 1.0), vec2(bias[own], bias[next]), c);",
             [compare](auto receiver, auto depth) {
                 using T = decltype(depth);
                 const CascadeChoice<T> choice = choose_cascade(depth, T(0.1), Vec4<T>{T(10), T(20), T(30), T(40)}, 4, T(0.2));

@@ -46,8 +46,12 @@ TEST(Functions, PcfCascades) {
     pcf.declare(matrices.glsl + "\n" + planes.glsl);
     // Near the slices' border, where the choice of one or two layers is the matter.
     pcf.test(
-           "cascaded_pcf(maps, matrices, planes, vec4(0.2, 0.1, 0.05, 0.05), 0.03125, 1e-4, receiver, n, "
-           "choose_cascade(depth, 0.1, vec4(10.0, 20.0, 30.0, 40.0), 4, 0.2), 3)",
+           "CascadeChoice c = choose_cascade(depth, 0.1, vec4(10.0, 20.0, 30.0, 40.0), 4, 0.2); int own = max(c.index, 0), next "
+           "= "
+           "max(c.next, 0); vec4 width = vec4(0.2, 0.1, 0.05, 0.05), at = vec4(receiver, 1.0), plane = vec4(n, -dot(n, "
+           "receiver)); "
+           "result = cascaded_pcf(maps, matrices[own] * at, planes[own] * plane, matrices[next] * at, planes[next] * plane, "
+           "vec2(width[own], width[next]), 0.03125, 1e-4, c, 3);",
            [compare](auto receiver, auto n, auto depth) {
                using T = decltype(depth);
                const CascadeChoice<T> choice = choose_cascade(depth, T(0.1), Vec4<T>{T(10), T(20), T(30), T(40)}, 4, T(0.2));

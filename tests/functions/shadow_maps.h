@@ -25,10 +25,11 @@ struct DepthTexture {
     int size = 0;
     std::vector<float> depths;
 
-    std::shared_ptr<const ImageData> image(bool arrayed = false) const {
+    // compared: as a depth texture; else its numbers alone.
+    std::shared_ptr<const ImageData> image(bool arrayed = false, bool compared = true) const {
         auto out = std::make_shared<ImageData>();
-        out->format = TexelFormat::d32_float;
-        out->depth = true;
+        out->format = compared ? TexelFormat::d32_float : TexelFormat::r32_float;
+        out->depth = compared;
         out->width = out->height = static_cast<uint32_t>(size);
         out->arrayed = arrayed;
         out->layers = static_cast<uint32_t>(depths.size()) / (out->width * out->height);

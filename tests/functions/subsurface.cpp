@@ -56,6 +56,24 @@ TEST(Functions, Subsurface) {
         [](auto at, auto scattering, auto absorption, auto b) { return dipole_profile(at, scattering, absorption, b); },
         number("r", logarithmic(1e-3, 100).with({0})), vector3("scattering", logarithmic(0.01, 100)),
         vector3("absorption", logarithmic(1e-4, 10)), boundary);
+    subsurface.test(
+        "burley_transmittance(x / s, vec3(s)).x", [](auto x, auto shape) { return burley_transmittance(x / shape, shape); },
+        number("x", logarithmic(1e-3, 60).with({0})), s);
+    subsurface.test(
+        "burley_through_tap(i, 32, s, x / s, rotation)",
+        [](auto i, auto x, auto shape, auto rotation) { return burley_through_tap(i, 32, shape, x / shape, rotation); },
+        integer("i", 0, 31), number("x", logarithmic(0.05, 10)), s, number("rotation", linear(-3, 3)));
+    // In mean free paths. tr below 1e-3 is where 1 - exp has lost its digits.
+    subsurface
+        .test(
+            "multipole_transmittance(thickness, vec3(a), vec3(1.0 - a), boundary).x",
+            [](auto thickness, auto a, auto b) {
+                using T = decltype(a);
+                return multipole_transmittance(thickness, a, T(1) - a, b);
+            },
+            number("thickness", logarithmic(0.01, 40).with({0})), number("a", linear(0, 1)), boundary)
+        .truth([](double thickness, double a, double b) { return multipole_transmittance_textbook(thickness, a, 1 - a, b); },
+               1e-9, 1e-15);
     subsurface.run();
 }
 

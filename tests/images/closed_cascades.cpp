@@ -149,8 +149,8 @@ TEST(ClosedForm, SeamsOfCascades) {
     const struct {
         const char *what, *from, *to;
     } all[] = {{"a band after the seam", "(end - width)) / max", "end) / max"},
-               {"the next layer's filter in this one", "width[layer], taps)", "width[layer] * 2.0, taps)"},
-               {"weights the wrong way round", "mix(lit[0], lit[1], choice.blend)", "mix(lit[1], lit[0], choice.blend)"}};
+               {"the next layer's filter in this one", "width.y, texel, quantum, taps)", "width.y * 2.0, texel, quantum, taps)"},
+               {"weights the wrong way round", "mix(lit, beyond, choice.blend)", "mix(beyond, lit, choice.blend)"}};
     for (const auto& w : all) {
         size_t off = 0;
         const double step = steps(0.5, {{w.from, w.to}}, &off);

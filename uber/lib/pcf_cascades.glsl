@@ -27,25 +27,31 @@ float cascade_pcf(sampler2DArrayShadow maps, vec4 clip, int layer, vec2 slope, f
     return lit / float(n * n);
 }
 
-// The chosen layers, filtered and blended. clip_of_world: each layer's matrix; plane_of_world: its inverse transpose;
-// width: of the box in each layer, uv; texel: side of a texel, uv; quantum: of the map, depth units (shadow_receiver.glsl).
-// receiver: world; n: unit normal there; taps: a side, 1 to 16.
-float cascaded_pcf(sampler2DArrayShadow maps, mat4 clip_of_world[4], mat4 plane_of_world[4], vec4 width, float texel,
-                   float quantum, vec3 receiver, vec3 n, CascadeChoice choice, int taps) {
+// A layer's own share of cascaded_pcf: 1 for layer -1. plane: the receiver's, in the layer's clip space.
+float cascade_pcf_layer(sampler2DArrayShadow maps, vec4 clip, vec4 plane, int layer, float width, float texel, float quantum,
+                        int taps) {
+    if (layer < 0) {
+        return 1.0;
+    }
+    const vec2 slope = receiver_depth_slope(plane, 64.0);
+    return cascade_pcf(maps, clip, layer, slope, receiver_depth_bias(slope, vec2(texel), quantum), width, taps);
+}
+
+// The chosen layers, filtered and blended, given places as cascaded_shadow is. clip, next_clip: the receiver in the clip space
+// of choice.index's layer and of choice.next's; plane, next_plane: its plane there, world plane times the inverse transpose of
+// the matrix; any four where the index is -1. width: of the box in both, uv; texel: side of a texel, uv; quantum: of the map,
+// depth units (shadow_receiver.glsl). taps: a side, 1 to 16.
+float cascaded_pcf(sampler2DArrayShadow maps, vec4 clip, vec4 plane, vec4 next_clip, vec4 next_plane, vec2 width, float texel,
+                   float quantum, CascadeChoice choice, int taps) {
     if (choice.index < 0) {
         return 1.0;
     }
-    const vec4 plane = vec4(n, -dot(n, receiver));
-    float lit[2] = float[2](1.0, 1.0);
-    for (int i = 0; i < (choice.blend > 0.0 ? 2 : 1); ++i) {
-        const int layer = i == 0 ? choice.index : choice.next;
-        if (layer >= 0) {
-            const vec2 slope = receiver_depth_slope(plane_of_world[layer] * plane, 64.0);
-            const float bias = receiver_depth_bias(slope, vec2(texel), quantum);
-            lit[i] = cascade_pcf(maps, clip_of_world[layer] * vec4(receiver, 1.0), layer, slope, bias, width[layer], taps);
-        }
+    float lit = cascade_pcf_layer(maps, clip, plane, choice.index, width.x, texel, quantum, taps);
+    if (choice.blend > 0.0) {
+        const float beyond = cascade_pcf_layer(maps, next_clip, next_plane, choice.next, width.y, texel, quantum, taps);
+        lit = mix(lit, beyond, choice.blend);
     }
-    return mix(lit[0], lit[1], choice.blend);
+    return lit;
 }
 
 #endif

@@ -97,6 +97,28 @@ vec3 burley_tap_weight(float r, vec3 s, float s_drawn) {
     return s * (e * e * e + e) / max(s_drawn * (d * d * d + d), 1e-30);
 }
 
+// Through a slab: diffuse light on its back over what leaves its front, divided by the albedo. The profile between two planes
+// d apart, R(sqrt(x^2 + y^2 + d^2)), over the plane is the share of R beyond d:
+//   (exp(-s d) + 3 exp(-s d / 3)) / 4
+// Golubev, "Efficient Screen-Space Subsurface Scattering Using Burley's Normalized Diffusion in Real-Time", SIGGRAPH 2018.
+// thickness: [0, inf), as long as 1/s is; s: (0, inf).
+vec3 burley_transmittance(float thickness, vec3 s) {
+    const vec3 e = exp(-s * (thickness / 3.0));
+    return 0.25 * e * (e * e + 3.0);
+}
+
+// Tap i of n over the back of a slab, for what is seen on the other side: offset.xy and the distance through the slab. Taps
+// stand with that profile's density; each is worth burley_transmittance / n.
+// i: [0, n); s thickness: [0, 30]; rotation: radians, any.
+vec3 burley_through_tap(int i, int n, float s, float thickness, float rotation) {
+    const float beyond = burley_transmittance(thickness, vec3(s)).x;
+    const float rest = 1.0 - (float(i) + 0.5) / float(n);
+    const float rho = max(burley_radius(1.0 - beyond * rest, s), thickness);
+    const float r = sqrt((rho - thickness) * (rho + thickness));
+    const float phi = 2.399963230 * float(i) + rotation;
+    return vec3(r * cos(phi), r * sin(phi), rho);
+}
+
 // Irradiance around uv, spread by Burley's profile of a flat surface, BURLEY_TAPS taps, over the weights' sum.
 // uv_per_length: how far one unit of length is in uv; s_drawn: the smallest component of s. Reads the only level.
 #ifndef BURLEY_TAPS
@@ -143,6 +165,26 @@ vec3 dipole_profile(float r, vec3 sigma_s, vec3 sigma_a, float boundary) {
     const vec3 real = zr * (1.0 + tr * dr) * exp(-tr * dr) / (dr * dr * dr);
     const vec3 image = zv * (1.0 + tr * dv) * exp(-tr * dv) / (dv * dv * dv);
     return sigma_s / sigma_t * (real + image) / (4.0 * pi);
+}
+
+// The dipole's answer for a slab under diffuse light, all mirror images summed (Donner and Jensen, "Light Diffusion in
+// Multi-Layered Translucent Materials", SIGGRAPH 2005, over the plane). With the source at z_r = 2/(3 sigma_t) below the lit
+// face, where diffuse light first scatters on average (a beam along the normal, as in the paper: 1/sigma_t), z_b = 2A/(3 sigma_t)
+// and tr = sqrt(3 sigma_a sigma_t) what comes out of the other is
+//   a sinh(tr (z_r + z_b)) cosh(tr z_b) / sinh(tr (d + 2 z_b))
+// here in exponentials that do not overflow. In a slab thinner than z_r the source is on the far face; light that
+// crosses unscattered is left out.
+// thickness: [0, inf); sigma_s (reduced), sigma_a: 1/length, [0, inf), not both 0, tr below 1e-3 sigma_t counts as that;
+// boundary: of dipole_boundary.
+vec3 multipole_transmittance(float thickness, vec3 sigma_s, vec3 sigma_a, float boundary) {
+    const vec3 sigma_t = sigma_s + sigma_a;
+    const vec3 tr = max(sqrt(3.0 * sigma_a * sigma_t), 1e-3 * sigma_t);
+    const vec3 beyond = 2.0 / 3.0 * boundary / sigma_t;
+    const vec3 depth = min(2.0 / 3.0 / sigma_t, vec3(thickness));
+    const vec3 into = 1.0 - exp(-2.0 * tr * (depth + beyond));
+    const vec3 out_of = 1.0 + exp(-2.0 * tr * beyond);
+    const vec3 across = 1.0 - exp(-2.0 * tr * (thickness + 2.0 * beyond));
+    return 0.5 * sigma_s / sigma_t * exp(-tr * (thickness - depth)) * into * out_of / across;
 }
 
 #endif

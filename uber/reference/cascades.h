@@ -47,17 +47,36 @@ T cascade_factor(const Compare& maps, const Vec4<T>& clip, int layer, const T& b
     return place.w > T(0) ? maps(layer, place.xy(), place.z - bias) : T(1);
 }
 
+// texel: callable (layer, column, row, depth) -> 1 lit or 0, clamped to the layer's edge; size: of a side.
+template <class T, class Compare>
+T cascade_factor_gathered_linear(const Compare& texel, int size, const Vec4<T>& clip, int layer, const T& bias) {
+    const Vec4<T> place = shadow_coordinates(clip);
+    const auto row = [&](int x, int y, const T& w) {
+        return mix(texel(layer, x, y, place.z - bias), texel(layer, x + 1, y, place.z - bias), w);
+    };
+    const T x = place.x * T(size) - T(0.5), y = place.y * T(size) - T(0.5), left = floor(x), top = floor(y);
+    const int i = to_int(left), j = to_int(top);
+    return place.w > T(0) ? mix(row(i, j, x - left), row(i, j + 1, x - left), y - top) : T(1);
+}
+
+template <class T, class Compare>
+T cascaded_shadow(const Compare& maps, const Vec4<T>& clip, const Vec4<T>& next_clip, const Vec2<T>& bias,
+                  const CascadeChoice<T>& choice) {
+    if (choice.index < 0) return T(1);
+    const T own = cascade_factor(maps, clip, choice.index, bias.x);
+    if (!(choice.blend > T(0))) return own;
+    return mix(own, choice.next < 0 ? T(1) : cascade_factor(maps, next_clip, choice.next, bias.y), choice.blend);
+}
+
+// As a renderer calls it.
 template <class T, class Compare>
 T cascaded_shadow(const Compare& maps, const std::array<Mat4<T>, 4>& clip_of_world, const Vec4<T>& bias, const Vec3<T>& receiver,
                   const CascadeChoice<T>& choice) {
     const T biases[] = {bias.x, bias.y, bias.z, bias.w};
     const Vec4<T> world{receiver.x, receiver.y, receiver.z, T(1)};
-    const auto layer = [&](int i) {
-        return i < 0 ? T(1) : cascade_factor(maps, clip_of_world[static_cast<size_t>(i)] * world, i, biases[i]);
-    };
-    if (choice.index < 0) return T(1);
-    if (!(choice.blend > T(0))) return layer(choice.index);
-    return mix(layer(choice.index), layer(choice.next), choice.blend);
+    const auto own = static_cast<size_t>(std::max(choice.index, 0)), next = static_cast<size_t>(std::max(choice.next, 0));
+    return cascaded_shadow(maps, clip_of_world[own] * world, clip_of_world[next] * world, Vec2<T>{biases[own], biases[next]},
+                           choice);
 }
 
 // Zhang et al. 2006, the practical scheme: where `count` slices of [near, far] end. lambda: 0 equal, 1 logarithmic; 0.5 to 0.75

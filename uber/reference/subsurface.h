@@ -89,6 +89,19 @@ Vec3<T> burley_tap_weight(const T& r, const Vec3<T>& s, const T& s_drawn) {
     return map(s, [&](const T& shape) { return shape * (exp(-shape * r) + exp(-shape * r / T(3))) / drawn; });
 }
 
+template <class T>
+T burley_transmittance(const T& thickness, const T& s) {
+    return (exp(-s * thickness) + T(3) * exp(-s * thickness / T(3))) / T(4);
+}
+template <class T>
+Vec3<T> burley_through_tap(int i, int n, const T& s, const T& thickness, const T& rotation) {
+    const T rest = T(1) - (T(i) + T(0.5)) / T(n);
+    const T rho = max(burley_radius(T(1) - burley_transmittance(thickness, s) * rest, s), thickness);
+    const T r = sqrt((rho - thickness) * (rho + thickness));
+    const T phi = T(pi * (3 - std::sqrt(5.0))) * T(i) + rotation;
+    return {r * cos(phi), r * sin(phi), rho};
+}
+
 // irradiance: (uv) -> Vec3.
 template <class T, class F>
 Vec3<T> burley_gather(F irradiance, const Vec2<T>& uv, const Vec2<T>& uv_per_length, const Vec3<T>& s, const T& s_drawn,
@@ -133,6 +146,23 @@ template <class T>
 Vec3<T> dipole_profile(const T& r, const Vec3<T>& sigma_s, const Vec3<T>& sigma_a, const T& boundary) {
     return {dipole_profile(r, sigma_s.x, sigma_a.x, boundary), dipole_profile(r, sigma_s.y, sigma_a.y, boundary),
             dipole_profile(r, sigma_s.z, sigma_a.z, boundary)};
+}
+
+// As sinh and cosh have it, in double.
+inline double multipole_transmittance_textbook(double thickness, double sigma_s, double sigma_a, double boundary) {
+    const double sigma_t = sigma_s + sigma_a, tr = std::fmax(std::sqrt(3 * sigma_a * sigma_t), 1e-3 * sigma_t);
+    const double beyond = 2 * boundary / (3 * sigma_t), depth = std::fmin(2 / (3 * sigma_t), thickness);
+    return sigma_s / sigma_t * std::sinh(tr * (depth + beyond)) * std::cosh(tr * beyond) /
+           std::sinh(tr * (thickness + 2 * beyond));
+}
+template <class T>
+T multipole_transmittance(const T& thickness, const T& sigma_s, const T& sigma_a, const T& boundary) {
+    const T sigma_t = sigma_s + sigma_a;
+    const T tr = max(sqrt(T(3) * sigma_a * sigma_t), T(1e-3) * sigma_t);
+    const T beyond = T(2.0 / 3) * boundary / sigma_t, depth = min(T(2.0 / 3) / sigma_t, thickness);
+    const T into = T(1) - exp(T(-2) * tr * (depth + beyond)), out_of = T(1) + exp(T(-2) * tr * beyond);
+    const T across = T(1) - exp(T(-2) * tr * (thickness + T(2) * beyond));
+    return T(0.5) * sigma_s / sigma_t * exp(-tr * (thickness - depth)) * into * out_of / across;
 }
 
 }  // namespace kiln::reference

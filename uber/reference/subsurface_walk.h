@@ -121,6 +121,30 @@ inline std::vector<Estimate> subsurface_edge(const Medium& medium, const std::ve
     return out;
 }
 
+// ... at x before or beyond an edge of the light on the back of a slab, seen from its front ...
+inline std::vector<Estimate> subsurface_slab_edge(const Medium& medium, double thickness, const std::vector<double>& x, int walks,
+                                                  uint64_t seed) {
+    Random random(seed);
+    std::vector<Samples> samples(x.size());
+    const auto inside_for = [&](const Vec3<double>& p, const Vec3<double>& d) {
+        return d.z > 0 ? -p.z / d.z : (d.z < 0 ? (-thickness - p.z) / d.z : std::numeric_limits<double>::infinity());
+    };
+    for (int i = 0; i < walks; ++i) {
+        Vec3<double> exit{};
+        const Vec3<double> direction = random_cosine(random, {0, 0, -1});
+        const double weight = subsurface_walk(random, medium, {0, 0, 0}, direction, inside_for, [&](const Vec3<double>& at) {
+            exit = at;
+            return at.z < -0.5 * thickness ? 1.0 : 0.0;
+        });
+        const double distance = std::hypot(exit.x, exit.y);
+        for (std::size_t k = 0; k < x.size(); ++k)
+            samples[k].add(weight == 0 ? 0 : weight * share_beyond_an_edge(x[k], distance));
+    }
+    std::vector<Estimate> out;
+    for (const Samples& s : samples) out.push_back(s.estimate());
+    return out;
+}
+
 // ... and at these cosines from the pole of a sphere that parallel light shines on.
 inline std::vector<Estimate> subsurface_terminator(const Medium& medium, double radius, const std::vector<double>& cosines,
                                                    int walks, uint64_t seed) {

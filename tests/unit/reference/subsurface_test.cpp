@@ -189,6 +189,50 @@ TEST(SubsurfaceWalk, EmptySlabTransmitsTheExponentialIntegral) {
     EXPECT_NEAR(walk.mean, 2 * 0.1096919671, 4.5 * walk.standard_error);
 }
 
+// What crosses a slab: Burley's share beyond its thickness, and the sum over the mirror images of a dipole.
+TEST(Subsurface, SlabsTransmitTheSharesTheyShould) {
+    for (const double d : {0.0, 0.3, 2.0, 9.0})
+        EXPECT_NEAR(burley_transmittance(d, 1.3), 1 - burley_cumulative_textbook(d, 1.3), 1e-14);
+    // Taps behind a slab have the mean square distance of that profile: integral over rho > d of rho^2, less d^2.
+    const double s = 1.3, d = 0.7;
+    double taps = 0, density = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const Vec3<double> tap = burley_through_tap(i, 4000, s, d, 0.0);
+        EXPECT_NEAR(tap.x * tap.x + tap.y * tap.y + d * d, tap.z * tap.z, 1e-9);
+        taps += (tap.x * tap.x + tap.y * tap.y) / 4000;
+    }
+    constexpr int steps = 200'000;
+    for (int i = 0; i < steps; ++i) {
+        const double rho = d + (i + 0.5) * 60 / steps;
+        density += (rho * rho - d * d) * s * (std::exp(-s * rho) + std::exp(-s * rho / 3)) / 4 * 60 / steps;
+    }
+    EXPECT_NEAR(taps, density / burley_transmittance(d, s), 0.01 * taps);
+    // The images one by one, where the medium absorbs enough for the sum to end.
+    const double a = 0.8, boundary = dipole_boundary(1.0), tr = std::sqrt(3 * (1 - a)), zb = 2 * boundary / 3, thick = 3;
+    double sum = 0;
+    for (int i = -60; i <= 60; ++i) {
+        const double real = 2 * i * (thick + 2 * zb) + 2.0 / 3, image = 2 * i * (thick + 2 * zb) - 2.0 / 3 - 2 * zb;
+        const auto out = [&](double z) { return (thick > z ? 1.0 : -1.0) * std::exp(-tr * std::fabs(thick - z)); };
+        sum += a / 2 * (out(real) - out(image));
+    }
+    EXPECT_NEAR(multipole_transmittance_textbook(thick, a, 1 - a, boundary), sum, 1e-12);
+    // Nothing absorbed: what diffusion has, (z_r + z_b) / (d + 2 z_b).
+    EXPECT_NEAR(multipole_transmittance_textbook(thick, 1, 0, boundary), (2.0 / 3 + zb) / (thick + 2 * zb), 1e-5);
+}
+
+TEST(SubsurfaceWalk, SlabsBetweenTheirLimits) {
+    // Far inside the light an edge on the back is none, far outside nothing comes.
+    const auto far = subsurface_slab_edge({0.9, 1}, 1.5, {1e9, 0.0, -1e9}, 20000, 3);
+    const Estimate whole = subsurface_slab({0.9, 1}, 1.5, 20000, 4, [](const Vec3<double>& p) { return p.z < -0.7 ? 1.0 : 0.0; });
+    EXPECT_NEAR(far[0].mean, whole.mean, 5 * std::hypot(far[0].standard_error, whole.standard_error));
+    EXPECT_NEAR(far[1].mean, 0.5 * whole.mean, 5 * std::hypot(far[1].standard_error, whole.standard_error));
+    EXPECT_EQ(far[2].mean, 0.0);
+    // A thick slab that absorbs nothing, of the surface's own index: Milne's problem has (2/3 + 0.7104) / (d + 1.4208).
+    const Estimate thick = subsurface_slab({1, 1}, 8, 20000, 5, [](const Vec3<double>& p) { return p.z < -4 ? 1.0 : 0.0; });
+    EXPECT_NEAR(thick.mean, (2.0 / 3 + 0.7104) / (8 + 1.4208), 4 * thick.standard_error);
+    EXPECT_NEAR(multipole_transmittance_textbook(8, 1, 0, 1.0), thick.mean, 0.01);
+}
+
 TEST(SubsurfaceWalk, InversionOfTheAlbedoHoldsForDiffuseLight) {
     for (const double albedo : {0.2, 0.5, 0.8}) {
         const double single = single_scattering_albedo(splat3(albedo)).x;
