@@ -14,6 +14,8 @@ TEST(Functions, CookTorrance) {
     };
     brdf.test("cook_torrance(n, v, l, diffuse, f0, roughness)", form, unit("n"), hemisphere("v", "n"), hemisphere("l", "n"),
               colour("diffuse"), colour("f0"), number("roughness", linear(0, 1).also({0.045})));
+    brdf.test(
+        "rough_coat_surplus(alpha)", [](auto alpha) { return rough_coat_surplus(alpha); }, number("alpha", linear(0, 1)));
     // From behind and against one another: finite, and 0 below the horizon.
     brdf.test("cook_torrance(n, v, l, diffuse, f0, roughness)", form, unit("n"), unit("v"), unit("l"), colour("diffuse"),
               colour("f0"), number("roughness", linear(-1, 2)))

@@ -84,20 +84,29 @@ TEST(Energy, LampsFromAllSides) {
     struct Case {
         const char* material;
         double base, specular, roughness, metallic, shininess;
+        int rings = 14, around = 32;
+        std::vector<V3> eyes = {{0.2, 10, 0.1}, {9, 3, 2}};
     };
-    const Case cases[] = {{"pbr_mr", 1, 0, 0.7, 1, 1},    {"pbr_mr", 1, 0, 1.0, 1, 1},     {"pbr_mr", 1, 0, 0.7, 0, 1},
-                          {"pbr_sg", 1, 0.04, 0.7, 0, 1}, {"pbr_sg", 0.5, 0.5, 1.0, 0, 1}, {"blinn_phong", 1, 0.0, 0, 0, 20},
-                          {"blinn_phong", 1, 1, 0, 0, 4}, {"blinn_phong", 1, 0.5, 0, 0, 8}};
-    constexpr int rings = 14, around = 32, size = 8;
-    std::vector<std::pair<V3, double>> lamps;
-    for (const auto& [x, w] : gauss_legendre(rings))
-        for (int k = 0; k < around; ++k) {
-            const double cosine = (x + 1) / 2, phi = 2 * reference::pi * (k + 0.5) / around,
-                         sine = std::sqrt(1 - cosine * cosine);
-            lamps.push_back({{sine * std::cos(phi), cosine, sine * std::sin(phi)}, w / 2 * 2 * reference::pi / around});
-        }
-    for (const Case& c : cases)
-        for (const V3& eye : {V3{0.2, 10, 0.1}, V3{9, 3, 2}}) {
+    const Case cases[] = {{"pbr_mr", 1, 0, 0.7, 1, 1},
+                          {"pbr_mr", 1, 0, 1.0, 1, 1},
+                          {"pbr_mr", 1, 0, 0.7, 0, 1},
+                          {"pbr_sg", 1, 0.04, 0.7, 0, 1},
+                          {"pbr_sg", 0.5, 0.5, 1.0, 0, 1},
+                          {"blinn_phong", 1, 0.0, 0, 0, 20},
+                          {"blinn_phong", 1, 1, 0, 0, 4},
+                          {"blinn_phong", 1, 0.5, 0, 0, 8},
+                          // Where a coat reflects most beyond F(n.v), from n.v = 0.6.
+                          {"pbr_sg", 1, 0.02, 0.325, 0, 1, 28, 64, {{8, 6, 0}}}};
+    for (const Case& c : cases) {
+        const uint32_t size = c.rings == 14 ? 8 : 3;
+        std::vector<std::pair<V3, double>> lamps;
+        for (const auto& [x, w] : gauss_legendre(c.rings))
+            for (int k = 0; k < c.around; ++k) {
+                const double cosine = (x + 1) / 2, phi = 2 * reference::pi * (k + 0.5) / c.around,
+                             sine = std::sqrt(1 - cosine * cosine);
+                lamps.push_back({{sine * std::cos(phi), cosine, sine * std::sin(phi)}, w / 2 * 2 * reference::pi / c.around});
+            }
+        for (const V3& eye : c.eyes) {
             Scene s = square(eye);
             make_white(s, c.base, c.specular, c.roughness, c.metallic);
             s.blocks.shininess = c.shininess;
@@ -130,6 +139,7 @@ TEST(Energy, LampsFromAllSides) {
                 ASSERT_GT(device_sum, 0.25) << c.material << ' ' << c.specular << ' ' << eye.x;
             }
         }
+    }
 }
 
 // Camera and lamp change places: what a point passes on, over its cosine to the lamp, is the same (Helmholtz).

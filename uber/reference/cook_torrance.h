@@ -7,7 +7,14 @@
 
 namespace kiln::reference {
 
-// ((1 - F(n.l)) (1 - F(n.v)) / (1 - Favg) diffuse / pi + D V F(v.h)) n.l
+// What a coat reflects beyond F(n.v), of F90: at most this.
+template <class T>
+T rough_coat_surplus(const T& alpha) {
+    const T flat_share = T(1) - alpha;
+    return T(0.028) * alpha * flat_share * flat_share;
+}
+
+// ((1 - F(n.l)) (1 - F(n.v)) / (1 - Favg) (1 - s F90) diffuse / pi + D V F(v.h)) n.l
 template <class T>
 Vec3<T> cook_torrance(const Vec3<T>& n, const Vec3<T>& v, const Vec3<T>& l, const Vec3<T>& diffuse, const Vec3<T>& f0,
                       const T& roughness) {
@@ -17,7 +24,7 @@ Vec3<T> cook_torrance(const Vec3<T>& n, const Vec3<T>& v, const Vec3<T>& l, cons
     const T lobe = ggx_distribution(n, h, alpha) * ggx_visibility(max(n_dot_l, T(1e-4)), n_dot_v, alpha);
     const Vec3<T> one = splat3(T(1));
     const Vec3<T> passed = (one - fresnel_schlick(n_dot_l, f0)) * (one - fresnel_schlick(n_dot_v, f0)) /
-                           max(one - fresnel_average(f0), splat3(T(1e-4)));
+                           max(one - fresnel_average(f0), splat3(T(1e-4))) * (T(1) - rough_coat_surplus(alpha) * fresnel_f90(f0));
     return (passed * diffuse / T(pi) + fresnel_schlick(dot(v, h), f0) * lobe) * n_dot_l;
 }
 

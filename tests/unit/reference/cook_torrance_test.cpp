@@ -52,10 +52,43 @@ TEST(CookTorrance, NeverReflectsMoreThanArrives) {
                     return cook_torrance(n, v, l, white, splat3(f0), roughness).x -
                            cook_torrance(n, v, l, black, splat3(f0), roughness).x;
                 });
-                EXPECT_NEAR(base, 1 - fresnel_schlick(n_dot_v, splat3(f0)).x, 1e-6);
-                EXPECT_LE(base + coat_albedo(n_dot_v, f0, roughness, quadrature), 1.002)
+                const double kept = 1 - rough_coat_surplus(roughness * roughness) * fresnel_f90(splat3(f0));
+                EXPECT_NEAR(base, (1 - fresnel_schlick(n_dot_v, splat3(f0)).x) * kept, 1e-6);
+                EXPECT_LE(base + coat_albedo(n_dot_v, f0, roughness, quadrature), 1 + 1e-4)
                     << f0 << " " << roughness << " " << n_dot_v;
             }
+}
+
+// Where a rough coat reflects more than a smooth one: finely, about roughness 0.325, n.v 0.6 and F0 0.02, where dimming the base
+// by F(n.v) alone gave back 1.0018 of what arrived.
+TEST(CookTorrance, ReflectsNoMoreWhereItsCoatReflectsMost) {
+    const TanhSinh quadrature(24);
+    double most = 0, undimmed = 0;
+    for (const double f0 : {0.01, 0.02, 0.025, 0.04, 0.08})
+        for (double roughness = 0.1; roughness < 0.56; roughness += 0.025)
+            for (double n_dot_v = 0.4; n_dot_v < 0.81; n_dot_v += 0.05) {
+                const double s = rough_coat_surplus(roughness * roughness) * fresnel_f90(splat3(f0));
+                const double smooth = 1 - fresnel_schlick(n_dot_v, splat3(f0)).x;
+                const double coat = coat_albedo(n_dot_v, f0, roughness, quadrature);
+                EXPECT_LE(smooth * (1 - s) + coat, 1 + 1e-4) << f0 << ' ' << roughness << ' ' << n_dot_v;
+                most = std::max(most, smooth * (1 - s) + coat);
+                undimmed = std::max(undimmed, smooth + coat);
+            }
+    EXPECT_NEAR(undimmed, 1.0018, 1e-4);
+    EXPECT_GT(most, 0.9995);
+}
+
+TEST(CookTorrance, TheSurplusIsTakenFromTheBase) {
+    const TanhSinh quadrature(30);
+    for (const double f0 : {0.02, 0.04})
+        for (const double roughness : {0.0625, 0.325, 0.8}) {
+            const double base = diffuse_albedo(0.6, quadrature, [&](const V3& n, const V3& v, const V3& l) {
+                return cook_torrance(n, v, l, white, splat3(f0), roughness).x -
+                       cook_torrance(n, v, l, black, splat3(f0), roughness).x;
+            });
+            const double s = rough_coat_surplus(roughness * roughness) * fresnel_f90(splat3(f0));
+            EXPECT_NEAR(base, (1 - fresnel_schlick(0.6, splat3(f0)).x) * (1 - s), 1e-6);
+        }
 }
 
 TEST(CookTorrance, IsReciprocal) {

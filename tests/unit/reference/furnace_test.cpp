@@ -25,12 +25,12 @@ TEST(Furnace, LambertReflectsItsAlbedoInEitherParametrisation) {
 }
 
 // A white base below a coat of every roughness and f0 reflects at most what arrives. The model is exact for a smooth coat; a
-// rough one lets the base's light pass as if it were smooth, and may keep 1e-3 too little for itself.
+// rough one takes at least as much from the base as it reflects more than that.
 TEST(Furnace, CookTorranceConserves) {
     const TanhSinh quadrature(40);
-    for (const double roughness : {0.1, 0.25, 0.5, 0.75, 1.0})
-        for (const double f0 : {0.0, 0.04, 0.3, 1.0})
-            for (const double n_dot_v : {0.02, 0.1, 0.5, 1.0}) {
+    for (const double roughness : {0.1, 0.25, 0.325, 0.5, 0.75, 1.0})
+        for (const double f0 : {0.0, 0.02, 0.04, 0.3, 1.0})
+            for (const double n_dot_v : {0.02, 0.1, 0.5, 0.6, 1.0}) {
                 const double albedo = specular_albedo(n_dot_v, roughness * roughness, quadrature,
                                                       [&](const V3& n, const V3& v, const V3& l) {
                                                           return cook_torrance(n, v, l, splat3(0.0), splat3(f0), roughness).x;
@@ -39,7 +39,7 @@ TEST(Furnace, CookTorranceConserves) {
                                           return cook_torrance(n, v, l, splat3(1.0), splat3(f0), roughness).x -
                                                  cook_torrance(n, v, l, splat3(0.0), splat3(f0), roughness).x;
                                       });
-                EXPECT_LE(albedo, 1.001) << roughness << ' ' << f0 << ' ' << n_dot_v;
+                EXPECT_LE(albedo, 1 + 1e-4) << roughness << ' ' << f0 << ' ' << n_dot_v;
             }
 }
 
