@@ -16,8 +16,9 @@
 #define MODEL_BLINN_PHONG_RAW 5
 #define MODEL_BLINN_PHONG_LECTURE 6
 #define MODEL_DISNEY 7
-#define MODEL_MERL_BIN 8
+#define MODEL_MERL_NEAREST 8
 #define MODEL_MERL_LINEAR 9
+#define MODEL_MERL_FILTERED 10
 
 #define DISTRIBUTION_GGX 0
 #define DISTRIBUTION_GGX_CROSS 1
@@ -85,8 +86,7 @@ layout(std140, set = 0, binding = 0) uniform Brdf {
     float clearcoat_gloss;
 };
 layout(set = 0, binding = 1) uniform sampler2D split_sum_table;
-// A MERL table: x is phi_d, y theta_d, z theta_h, 180 x 90 x 90 texels or any share of it; rgb: the stored numbers over 1500, so that
-// half floats hold them.
+// Measured: 182 x 90 x 90 texels as merl.glsl lays them out, linear and clamped.
 layout(set = 0, binding = 2) uniform sampler3D merl_table;
 
 layout(location = 0) in vec2 screen_uv;
@@ -219,31 +219,19 @@ vec3 reflected(vec3 n, vec3 v, vec3 l, vec3 diffuse, vec3 f0) {
     return f * n_dot_l;
 }
 
-#elif MODEL == MODEL_MERL_BIN || MODEL == MODEL_MERL_LINEAR
+#elif MODEL == MODEL_MERL_NEAREST || MODEL == MODEL_MERL_LINEAR || MODEL == MODEL_MERL_FILTERED
 
 #include "lib/merl.glsl"
 
-vec3 merl_stored(ivec3 bin) {
-    const ivec3 size = textureSize(merl_table, 0);
-    return 1500.0 * texelFetch(merl_table, bin.zyx * size / ivec3(180, 90, 90), 0).rgb;
-}
-
 vec3 reflected(vec3 n, vec3 v, vec3 l, vec3 diffuse, vec3 f0) {
     const vec3 at = merl_coordinates(n, l, safe_normalize(v + l, n));
-#if MODEL == MODEL_MERL_BIN
-    const vec3 f = merl_reflectance(merl_stored(merl_bin(at)));
+#if MODEL == MODEL_MERL_NEAREST
+    return merl_lookup_nearest(merl_table, at) * saturate(dot(n, l));
+#elif MODEL == MODEL_MERL_LINEAR
+    return merl_lookup(merl_table, at) * saturate(dot(n, l));
 #else
-    const MerlCorners m = merl_corners(at);
-    vec3 f = vec3(0.0);
-    for (int i = 0; i < 8; ++i) {
-        const bvec3 high = bvec3((i & 1) != 0, (i & 2) != 0, (i & 4) != 0);
-        const vec3 weight = mix(1.0 - m.weight, m.weight, high);
-        f += merl_reflectance(merl_stored(ivec3(high.x ? m.high.x : m.low.x, high.y ? m.high.y : m.low.y,
-                                                high.z ? m.high.z : m.low.z))) *
-             (weight.x * weight.y * weight.z);
-    }
+    return merl_lookup_filtered(merl_table, at) * saturate(dot(n, l));
 #endif
-    return f * saturate(dot(n, l));
 }
 
 #else

@@ -49,17 +49,21 @@ const BrdfMaps& maps() {
                 table.insert(table.end(), {static_cast<float>(ab.x), static_cast<float>(ab.y), 0, 1});
             }
         m.split_sum_table = Texture2D(16, 16, table, true, TextureWrap::clamp);
-        m.merl.size = {36, 18, 30};
+        // A lobe over theta_h with some structure; a bin in a thousand was not measured.
         Random random(5);
-        for (int z = 0; z < 30; ++z)
-            for (int y = 0; y < 18; ++y)
-                for (int x = 0; x < 36; ++x) {
-                    // A lobe over theta_h with some structure; a bin in a hundred was not measured.
-                    const double lobe = 0.2 + 2 * std::exp(-z / 5.0) + 0.02 * y + 0.05 * random();
-                    const bool missing = random() < 0.01;
-                    for (const double colour : {1.0, 0.8, 0.5, 0.0})
-                        m.merl.texels.push_back(missing ? -1.0f / 1500 : static_cast<float>(lobe * colour));
+        std::vector<std::array<float, 4>> bins;
+        for (int h = 0; h < 90; ++h)
+            for (int d = 0; d < 90; ++d)
+                for (int p = 0; p < 180; ++p) {
+                    const double lobe = 0.2 + 2 * std::exp(-h / 15.0) + 0.002 * d + 0.1 * std::sin(p * pi / 90);
+                    const float x = random() < 0.001 ? 0.0f : 1.0f, y = x * static_cast<float>(lobe);
+                    bins.push_back({y, y * 0.75f, y * 0.5f, x});
                 }
+        for (size_t row = 0; row < bins.size(); row += 180)
+            for (size_t column = 0; column < 182; ++column) {
+                const std::array<float, 4>& t = bins[row + (column + 179) % 180];
+                m.merl.texels.insert(m.merl.texels.end(), t.begin(), t.end());
+            }
         return m;
     }();
     return made;
@@ -90,14 +94,15 @@ NamedInputs inputs(const BrdfBlock& b) {
     m["clearcoat"] = {b.clearcoat};
     m["clearcoat_gloss"] = {b.clearcoat_gloss};
     in.textures["split_sum_table"] = study_texture(maps().split_sum_table);
-    auto table = std::make_shared<ImageData>();
-    table->dim = ImageDim::d3;
-    table->width = static_cast<uint32_t>(maps().merl.size[0]);
-    table->height = static_cast<uint32_t>(maps().merl.size[1]);
-    table->slices = static_cast<uint32_t>(maps().merl.size[2]);
-    const auto* bytes = reinterpret_cast<const uint8_t*>(maps().merl.texels.data());
-    table->texels.assign(bytes, bytes + maps().merl.texels.size() * sizeof(float));
-    in.textures["merl_table"] = {table, SamplerState{Filter::nearest, MipFilter::none, Wrap::clamp, Comparison::off}};
+    static const std::shared_ptr<const ImageData> measured = [] {
+        auto table = std::make_shared<ImageData>();
+        table->dim = ImageDim::d3;
+        table->width = 182, table->height = 90, table->slices = 90;
+        const auto* bytes = reinterpret_cast<const uint8_t*>(maps().merl.texels.data());
+        table->texels.assign(bytes, bytes + maps().merl.texels.size() * sizeof(float));
+        return table;
+    }();
+    in.textures["merl_table"] = {measured, SamplerState{Filter::linear, MipFilter::none, Wrap::clamp, Comparison::off}};
     return in;
 }
 
@@ -115,7 +120,7 @@ TEST(Study, EveryBrdf) {
     EXPECT_GT(variants.size(), 30u);
     for (const Values& v : variants) {
         const BrdfBlock b = block(v.at("parameters") == "pushed");
-        // A bin of MERL's is found by three arctangents, of which Vulkan promises eleven bits.
+        // Where MERL measured is found by three arctangents, of which Vulkan promises eleven bits.
         const bool merl = v.at("model").rfind("merl", 0) == 0;
         hold_study("study_brdf", v, inputs(b), expected(v, b), merl ? 0.4 : 0.05);
     }
@@ -140,8 +145,9 @@ TEST(Study, WrongBrdfsAreCaught) {
         {with(plain, "fresnel", "f82"), "17.6513846", "15.0"},
         {with(plain, "energy", "scaled"), "saturate(dfg.x + dfg.y)", "saturate(dfg.x)"},
         {with(plain, "diffuse", "disney_renormalised"), "1.0 / 1.51", "1.0"},
-        {with(plain, "model", "merl_bin"), "bin.zyx", "bin.zxy"},
-        {with(plain, "model", "merl_linear"), "vec3(1.0, 1.15, 1.66)", "vec3(1.0, 1.15, 1.5)"},
+        {with(plain, "model", "merl_nearest"), "ivec3(bin.z + 1, bin.y, bin.x)", "ivec3(bin.z + 1, bin.x, bin.y)"},
+        {with(plain, "model", "merl_linear"), "merl_texel(table, ivec3(h, m.low.y, m.low.z))",
+         "merl_texel(table, ivec3(0, m.low.y, m.low.z))"},
     };
     for (const Wrong& w : all)
         EXPECT_GT(hold_study("study_brdf", w.values, inputs(b), expected(w.values, b), 1, {{w.from, w.to}}).wrong, 500u) << w.to;

@@ -37,17 +37,18 @@ struct BrdfBlock {
            clearcoat_gloss = 0;
 };
 
-// Four floats a bin; x is phi_d, y theta_d, z theta_h.
+// Four floats a texel, as uber/lib/merl.glsl lays them out.
 struct MerlTable {
-    std::array<int, 3> size{};
     std::vector<float> texels;
-    Vec3<double> stored(const std::array<int, 3>& bin) const {  // (theta_h, theta_d, phi_d) of 90, 90, 180
-        const int x = bin[2] * size[0] / merl_phi_d_bins, y = bin[1] * size[1] / merl_theta_d_bins,
-                  z = bin[0] * size[2] / merl_theta_h_bins;
-        const auto at = [&](size_t c) {
-            return 1500 * static_cast<double>(texels[4 * static_cast<size_t>((z * size[1] + y) * size[0] + x) + c]);
-        };
-        return {at(0), at(1), at(2)};
+    Vec4<double> texel(int theta_h, int theta_d, int column) const {
+        const size_t at = 4 * static_cast<size_t>((theta_h * merl_theta_d_bins + theta_d) * (merl_phi_d_bins + 2) + column);
+        return {static_cast<double>(texels[at]), static_cast<double>(texels[at + 1]), static_cast<double>(texels[at + 2]),
+                static_cast<double>(texels[at + 3])};
+    }
+    template <class T>
+    Vec4<T> bin(int theta_h, int theta_d, int phi_d) const {
+        const Vec4<double> v = texel(theta_h, theta_d, phi_d + 1);
+        return {T(v.x), T(v.y), T(v.z), T(v.w)};
     }
 };
 
@@ -62,33 +63,28 @@ Vec3<T> study_vector(const Vec3<double>& v) {
 }
 
 template <class T>
-Vec3<T> merl_read(const BrdfMaps& maps, const std::array<int, 3>& bin) {
-    return merl_reflectance(study_vector<T>(maps.merl.stored(bin)));
-}
-
-template <class T>
-Vec3<T> merl_nearest(const BrdfMaps& maps, const Vec3<T>& c) {
-    const auto bin = [](const T& x, int bins) { return std::clamp(static_cast<int>(value(floor(x))), 0, bins - 1); };
-    return merl_read<T>(maps, {bin(c.x, merl_theta_h_bins), bin(c.y, merl_theta_d_bins), bin(c.z, merl_phi_d_bins)});
-}
-
-template <class T>
-Vec3<T> merl_between(const BrdfMaps& maps, const Vec3<T>& c) {
-    const Vec3<T> shifted = c - splat3(T(0.5)), whole = map(shifted, [](const T&x) { return T(floor(x)); });
-    const MerlCorners m = merl_corners(Vec3<double>{value(c.x), value(c.y), value(c.z)});
-    // Between pairs of bins, so that what the weights are off by counts by the steps that they weigh; the shader's sum of eight
-    // products rounds by itself.
-    const Vec3<T> t = shifted - whole;
-    Vec3<T> v[8];
-    double largest = 0;
-    for (unsigned i = 0; i < 8; ++i) {
-        v[i] = merl_read<T>(
-            maps, {((i & 1) != 0 ? m.high : m.low)[0], ((i & 2) != 0 ? m.high : m.low)[1], ((i & 4) != 0 ? m.high : m.low)[2]});
-        largest = std::max(largest, value(max_component(v[i])));
+Vec3<T> merl_of(const std::string& form, const BrdfMaps& maps, const Vec3<T>& c) {
+    const auto bin = [&](int h, int d, int p) { return maps.merl.bin<T>(h, d, p); };
+    if (form == "merl_nearest") {
+        for (const T& x : {c.x, c.y, c.z}) (void)floor(x);  // which bin may be too close to call
+        return merl_lookup_nearest(bin, c);
     }
-    const auto pair = [&](unsigned i) { return mix(v[i], v[i + 1], t.x); };
-    const Vec3<T> sum = mix(mix(pair(0), pair(2), t.y), mix(pair(4), pair(6), t.y), t.z);
-    return map(sum, [&](const T& x) { return loosened(x, 16 * bounds::ulp * largest); });
+    if (form == "merl_linear") return merl_lookup(bin, c);
+    // A sampler of its own weights between the same bins, in the texture's columns.
+    const Vec3<double> at{std::clamp(value(c.x) - 0.5, 0.0, 89.0), std::clamp(value(c.y) - 0.5, 0.0, 89.0), value(c.z) + 0.5};
+    const int h = static_cast<int>(at.x), d = static_cast<int>(at.y), p = static_cast<int>(at.z);
+    const auto weight = [](const T& x, double inside, int low) { return loosened(T(inside - low), error_of(x) + texel_step); };
+    const auto mixed = [](const Vec4<T>& a, const Vec4<T>& b, const T& t) {
+        return Vec4<T>{mix(a.x, b.x, t), mix(a.y, b.y, t), mix(a.z, b.z, t), mix(a.w, b.w, t)};
+    };
+    const auto texel = [&](int i, int j, int k) {
+        const Vec4<double> v = maps.merl.texel(std::min(i, 89), std::min(j, 89), std::min(k, 181));
+        return Vec4<T>{T(v.x), T(v.y), T(v.z), T(v.w)};
+    };
+    const T x = weight(c.x, at.x, h), y = weight(c.y, at.y, d), z = weight(c.z, at.z, p);
+    const auto row = [&](int i, int j) { return mixed(texel(i, j, p), texel(i, j, p + 1), z); };
+    const auto plane = [&](int i) { return mixed(row(i, d), row(i, d + 1), y); };
+    return merl_measured(mixed(plane(h), plane(h + 1), x));
 }
 
 template <class T>
@@ -187,7 +183,7 @@ Vec3<T> study_brdf(const BrdfAxes& axes, const BrdfBlock& b, const BrdfMaps& map
             return disney_brdf(n, v, l, d);
         }
         const Vec3<T> at = merl_coordinates(n, l, safe_normalize(v + l, n));
-        return (form == "merl_bin" ? merl_nearest(maps, at) : merl_between(maps, at)) * saturate(dot(n, l));
+        return merl_of(form, maps, at) * saturate(dot(n, l));
     };
     return model(axes.model) * (study_vector<T>(b.lamp_brightness) * T(pi));
 }
