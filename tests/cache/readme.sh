@@ -48,12 +48,15 @@ export KILN_CACHE=grpcs://localhost:$(sed -n 's/^grpc .*://p' ports)/main
 again grpc
 expect grpc.json '[d["work"]["compiled"], d["remote"]["hits"], d["remote"]["misses"]]' '[0, 3, 0]'
 # A pull request finds what main has; what it adds main does not see.
-export KILN_CACHE=${https%main}pr/7 KILN_CACHE_TOKEN_FILE=pr.token
+export KILN_CACHE=${https%main}pr/7 KILN_CACHE_TOKEN_FILE=pr-7.token
 again pr
 expect pr.json 'd["work"]["compiled"]' 0
 sed -i 's/water += sky;/water += sky * 0.5;/' uber/sky_light.frag
 kiln build manifests/sky_light.yaml -o changed.kiln --json >changed.json
 expect changed.json 'd["work"]["compiled"] > 0 and d["remote"]["sent"] > 0' True
+rm -rf "$XDG_CACHE_HOME"
+KILN_CACHE=${https%main}pr/8 kiln build manifests/sky_light.yaml -o eight.kiln --json >eight.json 2>eight.err
+expect eight.json '[d["work"]["compiled"] > 0, d["remote"]["hits"], d["remote"]["sent"]]' '[True, 0, 0]'
 rm -rf "$XDG_CACHE_HOME"
 KILN_CACHE=$https KILN_CACHE_TOKEN_FILE=branch.token kiln build manifests/sky_light.yaml -o other.kiln --json >other.json
 expect other.json 'd["work"]["compiled"] > 0' True

@@ -25,11 +25,12 @@ fresh() { rm -rf "$@"; }
 
 # --- the server ---
 umask 077
-for who in main-ci branch-ci pr-ci; do secret >"$who.token"; done
+for who in main-ci branch-ci pr-ci pr-9; do secret >"$who.token"; done
 cat >tokens <<TOKENS
 main-ci $(cat main-ci.token) main:read,cas-write,ac-write
 branch-ci $(cat branch-ci.token) main:read
 pr-ci $(cat pr-ci.token) main:read pr/*:read,cas-write,ac-write
+pr-9 $(cat pr-9.token) main:read pr/9:read,cas-write,ac-write until=2099-12-31
 TOKENS
 openssl genpkey -algorithm ed25519 -out sign.key 2>/dev/null
 openssl pkey -in sign.key -pubout -out sign.pub
@@ -72,6 +73,15 @@ fresh c
 job c pr-ci pull_request two pr2
 same two pr2
 expect pr2 '[d["work"]["compiled"], d["remote"]["sent"]]' '[0, 0]'
+
+fresh c
+PR=9 job c pr-9 pull_request two pr9
+same two pr9
+expect pr9 'd["remote"]["sent"] > 0 and d["remote"]["not_sent"] == 0' True
+fresh c
+PR=10 job c pr-9 pull_request two pr10
+same two pr10
+expect pr10 'd["remote"]["sent"]' 0
 
 echo "4. the pull request turns bad and writes other texts under the keys that main will ask"
 python3 "$here/poison.py" "$CACHE" pr-ci.token server.log | tee poison
