@@ -37,6 +37,13 @@ bool read_at(int fd, uint64_t offset, std::span<uint8_t> out) {
 
 }  // namespace
 
+BlobFile BlobFile::of(Bytes bytes) {
+    BlobFile file;
+    file.size_ = bytes.size();
+    file.memory_ = std::make_shared<Bytes>(std::move(bytes));
+    return file;
+}
+
 Status BlobFile::read(uint64_t offset, std::span<uint8_t> out) const {
     if (offset > size_ || out.size() > size_ - offset) return environment_error("cache: a read past a blob's end");
     if (fd_ == nullptr) {
@@ -189,10 +196,7 @@ Result<std::optional<BlobFile>> BlobReader::open(const Digest& key, bool* slow, 
     auto again = store_.get(Keyspace::blob, key);
     if (!again.ok()) return again.error();
     if (!again->has_value()) return std::optional<BlobFile>();
-    BlobFile mended;
-    mended.size_ = (*again)->size();
-    mended.memory_ = std::make_shared<Bytes>(std::move(**again));
-    return std::optional(std::move(mended));
+    return std::optional(BlobFile::of(std::move(**again)));
 }
 
 Result<bool> BlobReader::has(const Digest& key, uint64_t size) {

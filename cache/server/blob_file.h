@@ -13,6 +13,7 @@ namespace kiln {
 class BlobFile {
 public:
     BlobFile() = default;  // the empty blob
+    static BlobFile of(Bytes bytes);
     uint64_t size() const { return size_; }
     // Fills `out` from `offset` on; an Error when the file has become shorter or the disk fails.
     Status read(uint64_t offset, std::span<uint8_t> out) const;

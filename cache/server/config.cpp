@@ -129,6 +129,14 @@ const std::vector<std::pair<std::string_view, Take>>& table() {
         {"timeouts.drain", [](auto v, Config& c) { return seconds(v, c.drain); }},
         {"threads.io", [](auto v, Config& c) { return number(v, c.http.io_threads, 1, 64); }},
         {"threads.work", [](auto v, Config& c) { return number(v, c.http.work_threads, 0, 256); }},
+        {"chaos",
+         [](auto v, Config& c) -> Status {
+             const auto chaos = Chaos::parse(v);
+             if (!chaos.ok()) return input_error("wants seed=N,loss=P,error=P,flip=P,delay=MS with chances P from 0 to 1");
+             c.chaos = *chaos;
+             c.chaos_text = v;
+             return {};
+         }},
         {"log",
          [](auto v, Config& c) {
              return choice(v, c.log, {{"off", LogLevel::off}, {"events", LogLevel::events}, {"requests", LogLevel::requests}});

@@ -25,6 +25,8 @@ struct Config {
     ServiceLimits limits;
     int64_t verify_again_after = 600;  // seconds
     std::chrono::milliseconds drain{20'000};
+    std::optional<Chaos> chaos;  // for tests: hurt whoever calls
+    std::string chaos_text;      // as it was given
     LogLevel log = LogLevel::requests;
 };
 

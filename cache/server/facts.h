@@ -18,6 +18,7 @@ struct ServerFacts {
     std::vector<Event> events;  // latest first
     uint64_t in_flight = 0, answering = 0, hashed = 0;
     HttpStats http;
+    std::optional<ChaosStore::Counters> chaos;
 };
 
 // A page for a person, without scripts. Everything that came from a client is escaped.

@@ -44,6 +44,7 @@ Settings come from FILE (YAML) and from flags of the same names, which win:
   --timeouts.head S  --timeouts.body S  --timeouts.write S  --timeouts.idle S  --timeouts.drain S
   --timeouts.patience S  --limits.slowest SIZE   a body or a reply may take S seconds and its bytes at SIZE a second (60, 64KiB)
   --verify_again S        a blob read again within S seconds and unchanged on disk is not hashed anew (600)
+  --chaos seed=N,loss=P,error=P,flip=P,delay=MS   hurt whoever calls, for tests: chances P from 0 to 1
   --check                 read the settings and the token file, say what is wrong, and end
   --help  --version
 
@@ -211,6 +212,10 @@ int serve(const Config& config) {
         log.event(std::move(
             LogLine(event.kind).text("instance", event.instance).text("caller", event.caller).text("message", event.message)));
     };
+    if (config.chaos) {
+        std::fprintf(stderr, "{\"kind\":\"warning\",\"message\":\"--chaos: whatever this server is asked may fail\"}\n");
+        service.hurt(*config.chaos, config.chaos_text);
+    }
     const DiskWatch watch(**store);
     std::atomic<HttpServer*> http_now{nullptr};  // pages may be asked for from the moment that it listens
     const auto facts = [&] {
@@ -224,6 +229,7 @@ int serve(const Config& config) {
         f.counts = service.counters().total();
         f.instances = service.counters().by_instance();
         f.events = service.counters().recent();
+        if (config.chaos) f.chaos = service.mishaps().counters();
         f.in_flight = service.in_flight();
         f.answering = service.answering();
         f.hashed = service.hashed();

@@ -92,6 +92,13 @@ std::string metrics_page(const ServerFacts& facts) {
     f.one("http_timeouts_total", "Connections ended by a deadline in the middle of a request.", counter, facts.http.timeouts);
     f.one("tls_handshakes_failed_total", "TLS handshakes that failed.", counter, facts.http.handshakes_failed);
     f.one("accept_waits_total", "Times that accepting waited for file descriptors.", counter, facts.http.out_of_files);
+    if (facts.chaos) {
+        f.begin("chaos_total", "What --chaos did, by kind.", counter);
+        f.add(facts.chaos->lost, {{"kind", "lost"}});
+        f.add(facts.chaos->failed, {{"kind", "failed"}});
+        f.add(facts.chaos->flipped, {{"kind", "flipped"}});
+        f.add(facts.chaos->delayed, {{"kind", "delayed"}});
+    }
     f.one("start_time_seconds", "When the server started, in seconds since 1970.", gauge, static_cast<uint64_t>(facts.started));
     return f.text();
 }

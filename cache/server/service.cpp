@@ -50,6 +50,16 @@ void Service::tell(Event event) {
     counters_.event(std::move(event));
 }
 
+void Service::hurt(const Chaos& chaos, std::string_view as_text) {
+    mishaps_.begin(chaos);
+    tell({std::time(nullptr), "chaos", "", "",
+          "this server loses, fails, delays and alters what it is asked, on purpose: " + std::string(as_text)});
+}
+
+Refused Service::mishap(const Instance& instance, const Caller& caller) {
+    return refuse(instance.name, caller, Refusal::failed, "chaos: this call was to fail");
+}
+
 Refused Service::refuse(std::string_view instance, const Caller& caller, Refusal why, std::string message) {
     Counts counts;
     counts.refused[static_cast<size_t>(why)] = 1;
@@ -94,11 +104,31 @@ Service::BlobReads::~BlobReads() {
 }
 
 Answer<std::optional<BlobFile>> Service::BlobReads::open(const Digest& key, bool* slow, uint64_t moment) {
+    using Fate = Mishaps::Fate;
+    constexpr auto call = Mishaps::Call::get_blob;
+    Mishaps& mishaps = service_->mishaps_;
+    if (mishaps.on() && slow != nullptr) {  // what is delayed holds no I/O thread up
+        *slow = true;
+        return std::optional<BlobFile>();
+    }
+    const Fate fate = mishaps.meet(call, key);
+    if (fate == Fate::fails) return service_->mishap(instance_, *caller_);
+    if (fate == Fate::is_lost) {
+        ++counts_.blob_misses;
+        return std::optional<BlobFile>();
+    }
+    if (fate == Fate::flips_on_disk) mishaps.flip_file(call, key, service_->store_.path_of(Keyspace::blob, key));
     auto file = service_->reader_of_blobs_.open(key, slow, moment);
     if (!file.ok()) return service_->failure(instance_, *caller_, file.error());
     if (slow != nullptr && *slow) return std::optional<BlobFile>();
     ++(file->has_value() ? counts_.blob_hits : counts_.blob_misses);
     if (file->has_value()) counts_.blob_bytes_out += (*file)->size();
+    if (fate == Fate::flips_answer && file->has_value()) {
+        auto bytes = (*file)->all();
+        if (!bytes.ok()) return service_->failure(instance_, *caller_, bytes.error());
+        mishaps.flip_answer(call, key, *bytes);
+        return std::optional(BlobFile::of(std::move(*bytes)));
+    }
     return std::move(*file);
 }
 
@@ -117,6 +147,9 @@ Answer<std::optional<BlobFile>> Service::blob(const Caller& caller, std::string_
 Answer<bool> Service::has_blob(const Caller& caller, std::string_view name, const BlobName& blob) {
     auto instance = enter(caller, name, Role::read);
     if (!instance.ok()) return instance.refused();
+    const Mishaps::Fate fate = mishaps_.meet(Mishaps::Call::find_blob, blob.digest);
+    if (fate == Mishaps::Fate::fails) return mishap(*instance, caller);
+    if (fate == Mishaps::Fate::is_lost) return false;
     const auto found = reader_of_blobs_.has(blob.digest, blob.size);
     if (!found.ok()) return failure(*instance, caller, found.error());
     return *found;
@@ -130,6 +163,9 @@ Answer<Written> Service::put_blob(const Caller& caller, std::string_view name, c
         counters_.add(instance->name, one(&Counts::mismatches));
         return refuse(name, caller, Refusal::bad_request, "the bytes do not match the digest");
     }
+    const Mishaps::Fate fate = mishaps_.meet(Mishaps::Call::put_blob, blob.digest);
+    if (fate == Mishaps::Fate::fails) return mishap(*instance, caller);
+    if (fate == Mishaps::Fate::is_lost) return Written::now;
     const auto present = reader_of_blobs_.open(blob.digest);
     if (!present.ok()) return failure(*instance, caller, present.error());
     const bool there = present->has_value();
@@ -181,6 +217,12 @@ Result<Service::Found> Service::own_action(const Instance& instance, const std::
 Answer<std::optional<Bytes>> Service::action(const Caller& caller, std::string_view name, const Digest& key) {
     auto instance = enter(caller, name, Role::read);
     if (!instance.ok()) return instance.refused();
+    constexpr auto call = Mishaps::Call::get_action;
+    const Mishaps::Fate fate = mishaps_.meet(call, key);
+    if (fate == Mishaps::Fate::fails) return mishap(*instance, caller);
+    if (fate == Mishaps::Fate::is_lost) return std::optional<Bytes>();
+    if (fate == Mishaps::Fate::flips_on_disk)
+        mishaps_.flip_file(call, key, store_.path_of(Keyspace::action, action_name(instance->name, key)));
     Counts counts;
     // The most trusted first: what a pull request has written can then not hide what main has.
     std::vector<std::string> order(instance->parents.rbegin(), instance->parents.rend());
@@ -197,6 +239,7 @@ Answer<std::optional<Bytes>> Service::action(const Caller& caller, std::string_v
     }
     (hit ? counts.action_hits : counts.action_misses) = 1;
     counters_.add(instance->name, counts);
+    if (fate == Mishaps::Fate::flips_answer && hit) mishaps_.flip_answer(call, key, *hit);
     return hit;
 }
 
@@ -207,6 +250,9 @@ Answer<Written> Service::put_action(const Caller& caller, std::string_view name,
         return refuse(name, caller, Refusal::too_large, "the action record is larger than the server takes");
     if (!instance->opaque && reader_.action && (bytes.empty() || !reader_.action(bytes)))
         return refuse(name, caller, Refusal::bad_request, "the body is not an ActionResult that the server takes");
+    const Mishaps::Fate fate = mishaps_.meet(Mishaps::Call::put_action, key);
+    if (fate == Mishaps::Fate::fails) return mishap(*instance, caller);
+    if (fate == Mishaps::Fate::is_lost) return Written::now;
     const Digest own = action_name(instance->name, key);
     const std::lock_guard lock(stripe(own));
     std::optional<Bytes> there;

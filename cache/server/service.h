@@ -20,6 +20,7 @@
 #include "cache/server/blob_file.h"
 #include "cache/server/counters.h"
 #include "cache/server/instances.h"
+#include "cache/server/mishaps.h"
 
 namespace kiln {
 
@@ -65,6 +66,10 @@ public:
     Counters& counters() { return counters_; }
     // Called for what an operator should see: conflicts, damage, failures of the disk. Set before the first request.
     std::function<void(const Event&)> on_event;
+
+    // From here on this service hurts its callers. Before the first request, after on_event.
+    void hurt(const Chaos& chaos, std::string_view as_text);
+    const Mishaps& mishaps() const { return mishaps_; }
 
     // The instance, or unknown_instance; `role` is checked as well: forbidden for a known caller, else unauthenticated. A
     // caller without any role in an instance is not told whether it exists.
@@ -139,6 +144,7 @@ private:
     };
     Answer<Lease> lease(uint64_t bytes, std::atomic<uint64_t>& of);
     void tell(Event event);
+    Refused mishap(const Instance& instance, const Caller& caller);
     Refused failure(const Instance& instance, const Caller& caller, const Error& error);
     Result<Found> own_action(const Instance& instance, const std::string& name, const Digest& key);
     Result<bool> complete(ByteView action);
@@ -152,6 +158,7 @@ private:
     const ActionReader reader_;
     BlobReader reader_of_blobs_;
     Counters counters_;
+    Mishaps mishaps_;
     std::atomic<uint64_t> in_flight_{0}, answering_{0};
     std::array<std::mutex, 64> stripes_;  // one writer of an action at a time: the first is the first
 };

@@ -23,13 +23,14 @@ cmp alone.kiln killed.kiln
 
 # A disk that is full after a while, where a small one may be mounted.
 mkdir small
+skipped=
 if mount -t tmpfs -o size=300k tmpfs small 2>/dev/null; then
   trap 'umount "$t/small" 2>/dev/null || true; rm -rf "$real" "$real.link"' EXIT
   kiln build manifests/surface.yaml --target spirv -o full.kiln --cache small/cache >/dev/null 2>full.err || { cat full.err; fail 'a full cache failed the build'; }
   cmp alone.kiln full.kiln
   umount small
 else
-  echo "SKIPPED: a full disk (mounting needs root)"
+  skipped='a full disk: mounting needs root'
 fi
 
 kiln cache stats --cache shared --json >stats.json
@@ -44,3 +45,5 @@ mkdir home
 env -u XDG_CACHE_HOME HOME="$t/home" "$KILN" build manifests/sky_light.yaml -o sky.kiln >/dev/null
 [ -d home/.cache/kiln/action ] || fail 'nothing under ~/.cache/kiln'
 env -u XDG_CACHE_HOME -u HOME "$KILN" build manifests/sky_light.yaml -o sky.kiln >/dev/null
+# The rest of it has passed; ctest shows this one as skipped.
+[ -z "$skipped" ] || { echo "SKIP: $skipped"; exit 77; }

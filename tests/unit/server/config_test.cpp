@@ -93,6 +93,7 @@ TEST(Config, Mistakes) {
         {"folder: x\nlisten: 127.0.0.1", "wants a numeric address"},
         {"folder: x\nlisten: ::1:80", "wants a numeric address"},
         {"folder: x\nplain_text: yes", "wants true or false"},
+        {"folder: x\nchaos: loss=2", "line 2: chaos: wants seed="},
         {"folder: x\nlog: loud", "wants one of off, events, requests"},
         {"folder: x\nanonymous: admin\ntokens: t", "nobody without a token administers"},
         {"folder: x\nanonymous: read", "there are no tokens"},

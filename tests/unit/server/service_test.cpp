@@ -222,6 +222,38 @@ TEST(Service, TheFirstWholeValueStays) {
     EXPECT_EQ(s.get(reader, "", "key"), naming("one"));
 }
 
+TEST(Service, ChaosHurtsEveryCallFromItsSeed) {
+    const auto outcome = [](const std::string& spec) {
+        Served s;
+        std::vector<Event> seen;
+        s->on_event = [&](const Event& event) { seen.push_back(event); };
+        s->hurt(*Chaos::parse(spec), spec);
+        EXPECT_EQ(seen.at(0).kind, "chaos");
+        std::string all;
+        for (int i = 0; i < 200; ++i) {
+            const std::string text = std::to_string(i);
+            const auto put = s->put_blob(writer, "", blob_of(text), as_bytes(text));
+            const auto found = s->has_blob(reader, "", blob_of(text));
+            const auto blob = s->blob(reader, "", name_of(text));
+            all += !put.ok() ? "p" : !found.ok() ? "f" : !*found ? "a" : !blob.ok() ? "b" : !*blob ? "l" : ".";
+            if (blob.ok() && *blob && as_text(*(*blob)->all()) != text) all += "x";
+            const std::string set = s.set(writer, "ccache", text, text), got = s.get(reader, "ccache", text);
+            all += set == "failed" ? "s" : got == "failed" ? "g" : got == "absent" ? "n" : got != text ? "y" : ".";
+        }
+        const auto c = s->mishaps().counters();
+        EXPECT_EQ(c.lost != 0, spec.find("loss=0.") != std::string::npos) << spec;
+        EXPECT_EQ(c.failed != 0, spec.find("error=0.") != std::string::npos) << spec;
+        EXPECT_EQ(c.flipped != 0, spec.find("flip=0.") != std::string::npos) << spec;
+        EXPECT_EQ(s.store->counters().corrupt != 0, c.flipped != 0) << "some bits flip below the check";
+        return all;
+    };
+    EXPECT_EQ(outcome("seed=1").find_first_not_of('.'), std::string::npos) << "the control";
+    const std::string some = outcome("seed=1,loss=0.2,error=0.1,flip=0.3");
+    for (const char kind : std::string("pfablxsgny.")) EXPECT_NE(some.find(kind), std::string::npos) << kind << " of " << some;
+    EXPECT_EQ(outcome("seed=1,loss=0.2,error=0.1,flip=0.3"), some);
+    EXPECT_NE(outcome("seed=2,loss=0.2,error=0.1,flip=0.3"), some);
+}
+
 TEST(Service, DamageIsAnEvent) {
     Served s;
     std::vector<Event> seen;
