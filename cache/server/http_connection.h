@@ -6,6 +6,7 @@
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/ssl/stream.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -35,6 +36,7 @@ class ConnectionBase;
 struct HttpLoop {
     std::unordered_set<ConnectionBase*> connections;
     net::io_context context{1};  // its handlers own the connections: it goes first
+    net::steady_timer sweep{context};
 };
 
 struct HttpShared {
@@ -61,11 +63,14 @@ public:
     ConnectionBase& operator=(const ConnectionBase&) = delete;
     virtual void end() = 0;  // at once; pending operations fail
     bool idle() const { return idle_; }
+    bool idle_too_long(std::chrono::steady_clock::time_point now) const { return idle_ && now >= idle_until_; }
 
 protected:
     HttpShared& shared_;
     HttpLoop& loop_;
     bool idle_ = true;  // between requests
+    // A timer for each wait between requests would cost a small request two system calls: the loop looks now and then instead.
+    std::chrono::steady_clock::time_point idle_until_ = std::chrono::steady_clock::time_point::max();
 };
 
 // Of a head, what its grammar leaves open: whether the request's end is certain, and the fields that matter.
@@ -139,8 +144,12 @@ private:
         work_ = HttpWork();
         unread_ = false;
         idle_ = buffer_.size() == 0;
-        deadline(idle_ ? shared_.options.idle_timeout : shared_.options.head_timeout);
         began_ = Clock::now();
+        idle_until_ = began_ + shared_.options.idle_timeout;
+        if (idle_)
+            beast::get_lowest_layer(stream_).expires_never();
+        else
+            deadline(shared_.options.head_timeout);
         parse_head();
     }
 
@@ -427,6 +436,7 @@ private:
     // closing over unread bytes resets the connection under the response.
     void finish() {
         idle_ = true;
+        idle_until_ = Clock::time_point::max();
         deadline(std::chrono::seconds(2));
         if constexpr (secure) {
             if (!unread_) {

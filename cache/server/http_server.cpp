@@ -7,6 +7,7 @@
 #include <boost/asio/ssl/context.hpp>
 #include <boost/asio/steady_timer.hpp>
 
+#include <algorithm>
 #include <ctime>
 #include <mutex>
 #include <thread>
@@ -115,6 +116,7 @@ public:
         if (failed) return wrong("listen on");
         port_ = acceptor_->local_endpoint(failed).port();
         accept();
+        for (const auto& loop : loops_) sweep(*loop);
         for (const auto& loop : loops_) threads_.emplace_back([&context = loop->context] { context.run(); });
         return {};
     }
@@ -164,6 +166,21 @@ public:
     }
 
 private:
+    // Ends connections that have been idle for too long, at most an eighth of that time or a second late.
+    void sweep(HttpLoop& loop) {
+        using std::chrono::milliseconds;
+        loop.sweep.expires_after(std::clamp(options_.idle_timeout / 8, milliseconds(10), milliseconds(1000)));
+        loop.sweep.async_wait([this, &loop](beast::error_code stopped) {
+            if (stopped) return;
+            const auto now = std::chrono::steady_clock::now();
+            std::vector<ConnectionBase*> ended;  // ending one may remove it
+            for (ConnectionBase* connection : loop.connections)
+                if (connection->idle_too_long(now)) ended.push_back(connection);
+            for (ConnectionBase* connection : ended) connection->end();
+            sweep(loop);
+        });
+    }
+
     void accept() {
         HttpLoop& loop = *loops_[next_++ % loops_.size()];
         acceptor_->async_accept(loop.context, [this, &loop](beast::error_code failed, tcp::socket socket) {
