@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include "compiler/batch/batch.h"
 
@@ -12,12 +13,12 @@ namespace kiln {
 namespace {
 
 constexpr double batch_ms = 500;
-// Of one processor, about; they decide how the work is cut, not what comes out.
-constexpr double module_ms = 5, text_ms = 0.5;
 
-uint64_t cuts(double total_ms, uint64_t workers) {
+// Into how many batches of at least half a second, two a worker where there is enough work.
+uint64_t cuts(uint64_t questions, double total_ms, uint64_t workers) {
     const double most = std::floor(total_ms / batch_ms);
-    return static_cast<uint64_t>(std::clamp(most, 1.0, static_cast<double>(2 * std::max<uint64_t>(workers, 1))));
+    const double wanted = std::clamp(most, 1.0, static_cast<double>(2 * std::max<uint64_t>(workers, 1)));
+    return std::min(questions, static_cast<uint64_t>(wanted));
 }
 
 template <class Question>
@@ -32,18 +33,6 @@ std::vector<std::span<const Question>> cut(const std::vector<Question>& question
 }
 
 }  // namespace
-
-uint64_t batches_for(uint64_t questions, double ms_each, uint64_t workers) {
-    return questions == 0 ? 0 : std::min(questions, cuts(static_cast<double>(questions) * ms_each, workers));
-}
-
-double modelled_ms(uint64_t questions, double ms_each, uint64_t bytes, uint64_t workers, const DistributionModel& model) {
-    const uint64_t batches = batches_for(questions, ms_each, workers);
-    if (batches == 0) return 0;
-    const double rounds = std::ceil(static_cast<double>(batches) / static_cast<double>(workers));
-    const double work = static_cast<double>(questions) * ms_each / static_cast<double>(batches);
-    return rounds * (model.action_ms + model.start_ms + work) + static_cast<double>(bytes) / model.bytes_a_ms;
-}
 
 Result<std::unique_ptr<Distributor>> Distributor::make(Engine& engine, Store& store, Toolchain& tools, const std::string& worker,
                                                        std::chrono::milliseconds deadline) {
@@ -64,7 +53,7 @@ void Distributor::modules(std::span<const ModuleQuestion> questions) {
     counts_.questions += open.size();
     std::vector<Bytes> batches;
     std::vector<std::vector<Digest>> asked;
-    for (const auto part : cut(open, batches_for(open.size(), module_ms, engine_.width()))) {
+    for (const auto part : cut(open, cuts(open.size(), module_ms * static_cast<double>(open.size()), engine_.width()))) {
         batches.push_back(write_batch(tools_.identity(), part, {}));
         for (asked.emplace_back(); const ModuleQuestion& q : part) asked.back().push_back(q.action);
     }
@@ -87,10 +76,9 @@ void Distributor::artifacts(std::span<const ArtifactQuestion> questions) {
     }
     counts_.questions += texts;
     if (open.empty()) return;
-    const double each = text_ms * static_cast<double>(texts) / static_cast<double>(open.size());
     std::vector<Bytes> batches;
     std::vector<std::vector<Digest>> asked;
-    for (const auto part : cut(open, batches_for(open.size(), each, engine_.width()))) {
+    for (const auto part : cut(open, cuts(open.size(), text_ms * static_cast<double>(texts), engine_.width()))) {
         batches.push_back(write_batch(tools_.identity(), {}, part));
         asked.emplace_back();
         for (const ArtifactQuestion& q : part) asked.back().insert(asked.back().end(), q.actions.begin(), q.actions.end());
@@ -129,12 +117,50 @@ void Distributor::send(const char* what, std::vector<Bytes> batches, const std::
 
 void DistributionPlan::modules(std::span<const ModuleQuestion> questions) {
     module_step.questions += questions.size();
-    module_step.bytes += write_batch(versions_, questions, {}).size();
+    module_step.answers += questions.size();
+    module_step.bytes_out += write_batch(versions_, questions, {}).size();
+    const std::lock_guard lock(mutex_);
+    for (const ModuleQuestion& q : questions) asked_[q.action] = &module_step;
 }
 
 void DistributionPlan::artifacts(std::span<const ArtifactQuestion> questions) {
     artifact_step.questions += questions.size();
-    artifact_step.bytes += write_batch(versions_, {}, questions).size();
+    artifact_step.bytes_out += write_batch(versions_, {}, questions).size();
+    const std::lock_guard lock(mutex_);
+    for (const ArtifactQuestion& q : questions) {
+        artifact_step.answers += q.actions.size();
+        for (const Digest& action : q.actions) asked_[action] = &artifact_step;
+    }
+}
+
+Status DistributionPlan::put(Keyspace space, const Digest& key, ByteView bytes) {
+    if (space == Keyspace::action) return put_record(key, bytes, {});
+    const std::lock_guard lock(mutex_);
+    blobs_.emplace(key, bytes.size());
+    return {};
+}
+
+Status DistributionPlan::put_record(const Digest& key, ByteView record, std::span<const Digest> blobs) {
+    const std::lock_guard lock(mutex_);
+    const auto step = asked_.find(key);
+    if (step == asked_.end()) return {};
+    step->second->bytes_in += record.size();
+    for (const Digest& blob : blobs)
+        if (const auto found = blobs_.find(blob); found != blobs_.end())
+            step->second->bytes_in += std::exchange(found->second, 0);
+    return {};
+}
+
+uint64_t DistributionPlan::Step::batches(uint64_t workers) const {
+    return cuts(questions, static_cast<double>(answers) * answer_ms, workers);
+}
+
+double DistributionPlan::Step::ms(double work_ms, uint64_t workers, const DistributionModel& model) const {
+    const auto count = static_cast<double>(batches(workers));
+    if (count == 0) return 0;
+    const double rounds = std::ceil(count / static_cast<double>(workers));
+    return rounds * (model.action_ms + model.start_ms + work_ms / count) +
+           static_cast<double>(bytes_out + bytes_in) / model.bytes_a_ms;
 }
 
 }  // namespace kiln

@@ -2,7 +2,9 @@
 // Sends a pass's questions to an engine in batches and puts the answers into the store; or only says what it would send.
 
 #include <chrono>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "cache/execute/engine.h"
@@ -17,6 +19,9 @@ struct DistributionModel {
     double start_ms = 80;
     double bytes_a_ms = 100'000;  // 100 MB/s
 };
+
+// Of one processor, about; they decide how the work is cut, not what comes out.
+constexpr double module_ms = 5, text_ms = 0.5;
 
 struct DistributionCounts {
     uint64_t questions = 0;  // that the store had no answer to
@@ -49,26 +54,34 @@ private:
     DistributionCounts counts_;
 };
 
-// Notes the questions, leaves all of the work at home and times nothing itself: the plan takes the pass's own times.
-class DistributionPlan final : public Elsewhere {
+// Notes the questions and leaves all of the work at home. As the pass's store it notes what answers would weigh, and keeps
+// nothing.
+class DistributionPlan final : public Elsewhere, public Store {
 public:
     explicit DistributionPlan(std::string versions) : versions_(std::move(versions)) {}
     void modules(std::span<const ModuleQuestion> questions) override;
     void artifacts(std::span<const ArtifactQuestion> questions) override;
+    Result<std::optional<Bytes>> get(Keyspace, const Digest&) override { return std::optional<Bytes>(); }
+    Status put(Keyspace space, const Digest& key, ByteView bytes) override;
+    Status put_record(const Digest& key, ByteView record, std::span<const Digest> blobs) override;
 
     struct Step {
         const char* name = "";
-        uint64_t questions = 0, bytes = 0;
+        uint64_t questions = 0;  // classes, modules
+        double answer_ms = 0;    // as batches are cut
+        uint64_t answers = 0;    // that are asked for: of a module, one a text
+        uint64_t bytes_out = 0, bytes_in = 0;
+        uint64_t batches(uint64_t workers) const;
+        // What it takes when a processor needs `work_ms` for all of it.
+        double ms(double work_ms, uint64_t workers, const DistributionModel& model) const;
     };
-    Step module_step{"modules"}, artifact_step{"artifacts"};
+    Step module_step{"modules", 0, module_ms}, artifact_step{"artifacts", 0, text_ms};
 
 private:
     const std::string versions_;
+    std::mutex mutex_;  // of what follows, and of bytes_in
+    std::map<Digest, Step*> asked_;
+    std::map<Digest, uint64_t> blobs_;  // their sizes, until they are counted
 };
-
-// How `questions` of `ms_each` fall into batches of at least half a second, two a worker where there is enough work.
-uint64_t batches_for(uint64_t questions, double ms_each, uint64_t workers);
-// The time of one step on so many workers, in ms.
-double modelled_ms(uint64_t questions, double ms_each, uint64_t bytes, uint64_t workers, const DistributionModel& model);
 
 }  // namespace kiln

@@ -1,7 +1,9 @@
 #include "tools/execute.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -50,6 +52,14 @@ std::string worker_program() {
     if (const char* named = std::getenv("KILN_WORKER"); named != nullptr && *named != '\0') return named;
     std::error_code problem;
     return (std::filesystem::read_symlink("/proc/self/exe", problem).parent_path() / "kiln-worker").string();
+}
+
+// That this process has used, on all of its threads.
+double processor_ms() {
+    struct rusage usage {};
+    ::getrusage(RUSAGE_SELF, &usage);
+    const auto ms = [](const timeval& t) { return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_usec) / 1e3; };
+    return ms(usage.ru_utime) + ms(usage.ru_stime);
 }
 
 std::string seconds(double ms) {
@@ -114,61 +124,71 @@ std::string execution_warning(const Execution& execution) {
 int print_plan(const Args& args, const BuildOptions& options, PassContext& context) {
     const auto workers = args.number("--workers", 0, 1, 100'000);
     if (!workers.ok()) return print_error(workers.error());
-    NoStore none;
     DistributionPlan plan(context.tools.identity());
-    PassContext cold{context.files, none, context.tools, context.jobs, context.progress, &plan};
+    PassContext cold{context.files, plan, context.tools, context.jobs, context.progress, &plan};
+    const double began = processor_ms();
     const Build build = run_pass(options, cold);
     if (const int code = report_build(build); code != 0) return code;
+    const double used = processor_ms() - began;
 
     double here = 0;
     std::map<std::string, double> step_ms;
     for (const auto& [step, ms] : build.ms) step_ms[step] += ms, here += ms;
+    // What this machine gave others in the meantime is not the work's: times are those of processors to themselves.
+    const double jobs = static_cast<double>(context.jobs.threads()), sent = step_ms["modules"] + step_ms["artifacts"];
+    const double share = std::clamp(used / (sent * jobs + here - sent), 0.01, 1.0);
+    for (auto& [step, ms] : step_ms) ms *= share;
+    const double alone = here * share, rest = (here - sent) * share;
     const DistributionModel model;
-    const double jobs = static_cast<double>(context.jobs.threads());
-    const auto each = [&](const DistributionPlan::Step& step) {
-        return step.questions == 0 ? 0 : step_ms[step.name] * jobs / static_cast<double>(step.questions);
-    };
-    const double module_ms = each(plan.module_step), artifact_ms = each(plan.artifact_step);
-    const double rest = here - step_ms["modules"] - step_ms["artifacts"];
+    const auto work = [&](const DistributionPlan::Step& step) { return step_ms[step.name] * jobs; };
     const auto modelled = [&](uint64_t n) {
-        return rest + modelled_ms(plan.module_step.questions, module_ms, plan.module_step.bytes, n, model) +
-               modelled_ms(plan.artifact_step.questions, artifact_ms, plan.artifact_step.bytes, n, model);
+        return rest + plan.module_step.ms(work(plan.module_step), n, model) +
+               plan.artifact_step.ms(work(plan.artifact_step), n, model);
     };
+    const auto batches = [&](uint64_t n) { return plan.module_step.batches(n) + plan.artifact_step.batches(n); };
     std::vector<uint64_t> counts = {1, 2, 4, 8, 16, 32, 64};
     if (*workers != 0) counts = {static_cast<uint64_t>(*workers)};
 
     if (args.has("--json")) {
         Json json;
         json.object().key("steps").array();
-        for (const auto& [step, ms] : {std::pair(plan.module_step, module_ms), std::pair(plan.artifact_step, artifact_ms)})
+        for (const auto& step : {plan.module_step, plan.artifact_step})
             json.object()
                 .text("step", step.name)
                 .number("questions", step.questions)
-                .number("bytes", step.bytes)
-                .number("ms_each", ms)
+                .number("bytes", step.bytes_out)
+                .number("bytes_back", step.bytes_in)
+                .number("work_ms", work(step))
                 .end();
-        json.end().number("here_ms", here).number("not_distributed_ms", rest).key("model").array();
+        json.end().number("here_ms", alone).number("measured_ms", here).number("not_distributed_ms", rest).key("model").array();
         for (const uint64_t n : counts)
-            json.object()
-                .number("workers", n)
-                .number("batches", batches_for(plan.module_step.questions, module_ms, n) +
-                                       batches_for(plan.artifact_step.questions, artifact_ms, n))
-                .number("ms", modelled(n))
-                .end();
+            json.object().number("workers", n).number("batches", batches(n)).number("ms", modelled(n)).end();
         json.end().end();
         return finish(json.take());
     }
     const auto n = [](uint64_t v) { return Count(v).grouped(); };
-    std::string out = "compile    " + n(plan.module_step.questions) + " classes, " + n(plan.module_step.bytes) + " bytes\n" +
-                      "translate  " + n(plan.artifact_step.questions) + " modules, " + n(plan.artifact_step.bytes) + " bytes\n" +
-                      "here       " + seconds(here) + " with " + std::to_string(context.jobs.threads()) + " jobs, of which " +
-                      seconds(rest) + " stay here\n";
-    for (const uint64_t count : counts)
-        out += std::to_string(count) + (count == 1 ? " worker   " : " workers  ") +
-               n(batches_for(plan.module_step.questions, module_ms, count) +
-                 batches_for(plan.artifact_step.questions, artifact_ms, count)) +
-               " batches, about " + seconds(modelled(count)) + (modelled(count) < here ? "\n" : ", no gain\n");
-    out += "modelled with 90 ms an action, 80 ms a worker's start and 100 MB/s; batches of at least half a second of work\n";
+    const auto line = [&](const char* what, const DistributionPlan::Step& step, const char* of) {
+        return what + n(step.questions) + of + seconds(work(step)) + " of work, " + n(step.bytes_out) + " bytes out, " +
+               n(step.bytes_in) + " back\n";
+    };
+    std::string out = line("compile    ", plan.module_step, " classes, ") +
+                      line("translate  ", plan.artifact_step, " modules, ") + "here       " + seconds(alone) + " with " +
+                      std::to_string(context.jobs.threads()) + " jobs, of which " + seconds(rest) + " stay here";
+    if (share < 0.75) out += " (" + seconds(here) + " now: this machine is busy with other things)";
+    out += "\n";
+    uint64_t pays = 0;
+    for (const uint64_t count : counts) {
+        if (pays == 0 && modelled(count) < alone) pays = count;
+        out += std::to_string(count) + (count == 1 ? " worker   " : " workers  ") + n(batches(count)) + " batches, about " +
+               seconds(modelled(count)) + (modelled(count) < alone ? "\n" : ", no gain\n");
+    }
+    if (counts.size() > 1 && pays != 0)
+        out += "from an empty cache it pays from " + std::to_string(pays) + " workers on; what the cache knows is not sent\n";
+    else if (counts.size() > 1)
+        out += "it does not pay: there is too little work\n";
+    out +=
+        "modelled with workers as fast as this machine, 90 ms an action, 80 ms a worker's start and 100 MB/s; batches of at "
+        "least half a second of work\n";
     return finish(out);
 }
 
