@@ -147,6 +147,7 @@ bool Diagram::Body::lookup(uint32_t op, uint32_t a, uint32_t b, uint32_t* result
 }
 
 void Diagram::Body::remember(uint32_t op, uint32_t a, uint32_t b, uint32_t result) {
+    if (steps_left-- == 0) exhausted = true;
     if (!exhausted) cache_[slot_of(op, a, b, cache_.size())] = {a, b, op, result};
 }
 
@@ -262,5 +263,6 @@ uint32_t Diagram::level_of_axis(uint32_t axis) const { return body_->level_of[ax
 size_t Diagram::nodes() const { return body_->nodes.size(); }
 size_t Diagram::node_limit() const { return body_->limit; }
 bool Diagram::exhausted() const { return body_->exhausted; }
+void Diagram::limit_steps(size_t steps) { body_->steps_left = steps; }
 
 }  // namespace kiln

@@ -81,8 +81,11 @@ public:
     uint32_t level_of_axis(uint32_t axis) const;
     size_t nodes() const;
     size_t node_limit() const;
-    // True once an operation ran past the node limit; results since then are meaningless.
+    // True once an operation ran past the node limit or the steps; results since then are meaningless.
     bool exhausted() const;
+    // For questions that may stay unanswered: so many results more are worked out. Few nodes can still mean years, since the
+    // cache of results is bounded.
+    void limit_steps(size_t steps);
 
 private:
     struct Body;

@@ -48,6 +48,7 @@ struct Diagram::Body {
     size_t limit, edge_limit;
     size_t edges_made = 0;
     bool exhausted = false;
+    size_t steps_left = ~size_t{0};  // results that may still be worked out
     uint32_t levels() const { return static_cast<uint32_t>(order.size()); }
     static NodeId child(const Node& node, uint32_t digit);
     // The run at or after `from` that holds the digit.

@@ -12,6 +12,7 @@ bool Diagram::Body::subset(NodeId a, NodeId b) {
     if (a == b || a == 0 || b == 1) return true;
     if (b == 0 || a == 1) return false;  // reduced: only node 1 is everything
     uint32_t known = 0;
+    if (exhausted) return false;
     if (lookup(op_subset, a, b, &known)) return known != 0;
     const Node na = nodes[a], nb = nodes[b];
     bool holds = true;
@@ -39,6 +40,7 @@ bool Diagram::Body::disjoint(NodeId a, NodeId b) {
     if (a == 1 || b == 1 || a == b) return false;
     if (a > b) std::swap(a, b);
     uint32_t known = 0;
+    if (exhausted) return false;
     if (lookup(op_disjoint, a, b, &known)) return known != 0;
     const Node na = nodes[a], nb = nodes[b];
     bool holds = true;

@@ -16,7 +16,8 @@ namespace kiln {
 namespace {
 
 constexpr size_t scratch_nodes = 2'000'000;
-constexpr size_t most_work = 50'000'000;  // rules times nodes of the legal set
+constexpr size_t scratch_steps = 20'000'000;  // a second or two
+constexpr size_t most_work = 50'000'000;      // rules times nodes of the legal set
 
 using RuleKey = std::tuple<std::string, uint32_t, uint32_t, std::string>;
 RuleKey key_of(const Rule& rule) { return {rule.place.file, rule.place.line, rule.place.column, rule.text}; }
@@ -50,6 +51,7 @@ public:
 
     void look_at(Space& space) {
         Diagram scratch(space.diagram->radices(), space.diagram->order(), scratch_nodes);
+        scratch.limit_steps(scratch_steps);
         std::vector<Set> allowed;
         for (const Rule& rule : space.rules) {
             const Set holds = set_of(scratch, space.axes, rule.expr, static_cast<uint32_t>(rule.expr.nodes.size() - 1));

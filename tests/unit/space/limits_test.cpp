@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "compiler/base/diag.h"
 #include "compiler/space/describe.h"
@@ -201,6 +202,26 @@ TEST(Limits, IndependentPartsDeclaredInterleaved) {
     Count one = fibonacci(52);
     EXPECT_EQ(space->diagram->count(space->legal), one * one * one * one);
     EXPECT_LT(space->diagram->nodes(), 1'000u);
+}
+
+TEST(Limits, StepsRunOutLikeNodes) {
+    const auto build = [](size_t steps) {
+        std::vector<uint32_t> radices(24, 2), order(24);
+        std::iota(order.begin(), order.end(), 0U);
+        auto d = std::make_unique<Diagram>(radices, order);
+        d->limit_steps(steps);
+        Set equal = Diagram::all();  // of axes far apart, so every step doubles the work
+        for (uint32_t a = 0; a < 12; ++a) {
+            const Set x = d->where(a, 1), y = d->where(a + 12, 1);
+            equal = d->both(equal, d->either(d->both(x, y), d->complement(d->either(x, y))));
+        }
+        return std::pair{std::move(d), equal};
+    };
+    const auto whole = build(1'000'000);
+    EXPECT_FALSE(whole.first->exhausted());
+    EXPECT_EQ(whole.first->count(whole.second), Count(4096));
+    const auto cut = build(1'000);
+    EXPECT_TRUE(cut.first->exhausted());
 }
 
 }  // namespace
