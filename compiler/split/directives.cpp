@@ -182,6 +182,15 @@ void Preprocessor::include(const Token& at, const Token* begin, const Token* end
         here_ = outer;
         return;
     }
+    // Two includes in each of thirty files are a billion files read, all well within the depth.
+    constexpr size_t most_included = 50'000'000;  // tokens, and as much for a file as for 50 of them
+    const LexedFile& included = sources_.file(*found.file).lexed;
+    included_ += included.tokens.size() + included.items.size() + 50;
+    if (included_ > most_included) {
+        pp_.findings.error(*begin, "includes read more than can be compiled: " + std::string(name) + " once more", here_);
+        kill(here_);
+        return;
+    }
     const bool apart = here_ != outer;
     if (apart) sequences_.emplace_back();
     const Set reading = here_;

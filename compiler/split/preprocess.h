@@ -69,6 +69,7 @@ private:
     Evaluator evaluator_;
     uint64_t max_states_;
     uint64_t states_ = 1;
+    size_t included_ = 0;  // tokens read by #include, over all of them
     bool over_limit_ = false;
     std::vector<Set> split_sets_;
     Set here_ = Diagram::none();

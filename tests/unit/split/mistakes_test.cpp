@@ -50,6 +50,17 @@ TEST(SplitMistakes, RedefiningAnAxis) {
         "");
 }
 
+TEST(SplitMistakes, IncludesThatDoubleAtEachLevel) {
+    TestShader shader;
+    shader.files["main"] = std::string(head) + "#include \"0\"\n";
+    for (int i = 0; i < 60; ++i) {
+        const std::string line = "#include \"" + std::to_string(i + 1) + "\"\n";
+        shader.files[std::to_string(i)] = line + line;
+    }
+    shader.files["60"] = "\n";
+    EXPECT_NE(said(shader).find("includes read more than can be compiled"), std::string::npos) << said(shader);
+}
+
 TEST(SplitMistakes, Includes) {
     TestShader shader;
     shader.include = {"../lib"};
