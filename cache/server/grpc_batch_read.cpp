@@ -107,6 +107,7 @@ private:
     bool begin_at_once() override {
         in_ = request_.Length();
         if (const grpc::Status s = parse(); !s.ok()) return end(s), true;
+        if (const grpc::Status held = hold_answer(total_); !held.ok()) return end(held), true;
         if (total_ > small_batch || names_.size() > small_count) return false;
         bool slow = false;
         if (!read(&slow)) return false;
@@ -126,6 +127,7 @@ private:
         auto reads = shared_.service.reads(*caller_, asked_.instance_name());
         if (!reads.ok()) return status_of(reads.refused());
         reads_.emplace(std::move(*reads));
+        if (asked_.digests_size() > grpc_most_entries) return invalid("more digests than one message may name");
         constexpr auto most = static_cast<uint64_t>(grpc_most_batch);
         names_.reserve(static_cast<size_t>(asked_.digests_size()));
         for (const reapi::Digest& digest : asked_.digests()) {

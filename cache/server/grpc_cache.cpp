@@ -154,6 +154,7 @@ private:
         }
         if (page_.directories().empty()) return end(grpc::Status::OK);
         out_ += bytes;
+        if (const grpc::Status held = hold_answer(bytes); !held.ok()) return end(held);
         writer_.Write(page_, tag());
     }
 
@@ -186,6 +187,7 @@ private:
         if (grpc::Status s = check_function(request.digest_function()); !s.ok()) return s;
         const auto instance = shared_.service.enter(caller, request.instance_name(), Role::read);
         if (!instance.ok()) return status_of(instance.refused());
+        if (request.blob_digests_size() > grpc_most_entries) return invalid("more digests than one message may name");
         for (const reapi::Digest& digest : request.blob_digests()) {
             const auto name = name_of(digest);
             if (!name) return invalid("a digest is none");
@@ -201,6 +203,7 @@ private:
         if (grpc::Status s = check_function(request.digest_function()); !s.ok()) return s;
         const auto instance = shared_.service.enter(caller, request.instance_name(), Role::cas_write);
         if (!instance.ok()) return status_of(instance.refused());
+        if (request.requests_size() > grpc_most_entries) return invalid("more blobs than one message may hold");
         for (const auto& one : request.requests()) {
             auto& said = *out.add_responses();
             *said.mutable_digest() = one.digest();

@@ -1,5 +1,6 @@
 #include "cache/server/grpc_call.h"
 
+#include <algorithm>
 #include <ctime>
 #include <exception>
 
@@ -29,6 +30,19 @@ std::shared_ptr<const Caller> CallContext::caller(const grpc::ServerContext& con
     };
     const Caller& found = one();
     return {std::move(tokens), &found};
+}
+
+std::chrono::seconds CallContext::time_for(uint64_t bytes) const {
+    return options.patience + std::chrono::seconds(bytes / std::max<uint64_t>(options.slowest, 1));
+}
+
+grpc::Status Call::hold_answer(uint64_t bytes) {
+    answer_ = Service::Lease();
+    auto lease = shared_.service.lease_response(bytes);
+    if (!lease.ok()) return status_of(lease.refused());
+    answer_ = std::move(*lease);
+    timer_.emplace(&context_, shared_.time_for(bytes));
+    return grpc::Status::OK;
 }
 
 template <class Step>

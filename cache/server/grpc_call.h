@@ -9,6 +9,8 @@
 #include <grpcpp/grpcpp.h>
 #include <remote_execution.grpc.pb.h>
 
+#include <mutex>
+#include <optional>
 #include <type_traits>
 
 #include "cache/protocol/resource_name.h"
@@ -19,6 +21,21 @@ namespace kiln {
 
 namespace reapi = build::bazel::remote::execution::v2;
 
+// Ends a call that takes too long. The call and its context may be gone when the time comes.
+class CallTimer {
+public:
+    CallTimer(grpc::ServerContext* context, std::chrono::seconds after);
+    ~CallTimer();
+
+private:
+    struct Shared {
+        std::mutex mutex;
+        grpc::ServerContext* context;
+    };
+    std::shared_ptr<Shared> shared_;
+    grpc::Alarm alarm_;
+};
+
 struct CallContext {
     Service& service;
     Log& log;
@@ -28,6 +45,8 @@ struct CallContext {
 
     // By the metadata "authorization: Bearer T" (or Basic); a field that is neither is no token.
     std::shared_ptr<const Caller> caller(const grpc::ServerContext& context) const;
+    // What sending or receiving so many bytes may take.
+    std::chrono::seconds time_for(uint64_t bytes) const;
 };
 
 // One call, from the wait for it to its end, when it deletes itself. Its events come one at a time: begin() and go_on() end with
@@ -49,6 +68,9 @@ protected:
     virtual void go_on(bool) {}                        // the operation before is done; false: the client is gone
     virtual void end(const grpc::Status& status) = 0;  // by an operation; with ended()
     virtual std::string subject() const = 0;           // for the log: an instance or a resource name
+    // Before the operation that sends so many bytes, whose reader may be slow: takes a share of the memory for answers until the
+    // next one, and the time that it may take. Not ok: `busy`, and the call is to be ended with that.
+    grpc::Status hold_answer(uint64_t bytes);
     // Marks the next event as the last and writes the log.
     const grpc::Status& ended(const grpc::Status& status);
     void* tag() { return this; }
@@ -58,6 +80,7 @@ protected:
     grpc::ServerContext context_;
     std::shared_ptr<const Caller> caller_;
     uint64_t in_ = 0, out_ = 0;  // bytes of messages, for the log
+    std::optional<CallTimer> timer_;
 
 private:
     enum class State { waits, runs, ends };
@@ -65,6 +88,7 @@ private:
     void guarded(Step step);
     const char* const method_;
     State state_ = State::waits;
+    Service::Lease answer_;
     std::chrono::steady_clock::time_point began_{};
 };
 
@@ -88,10 +112,10 @@ private:
     void wait_for_next() override { new UnaryCall(shared_, queue_, what_); }
     void begin() override {
         const grpc::Status status = what_->answer(*caller_, request_, response_);
-        if (shared_.log.wants_requests()) {
-            in_ = request_.ByteSizeLong();
-            out_ = status.ok() ? response_.ByteSizeLong() : 0;
-        }
+        if (shared_.log.wants_requests()) in_ = request_.ByteSizeLong();
+        if (!status.ok()) return end(status);
+        out_ = response_.ByteSizeLong();
+        if (const grpc::Status held = hold_answer(out_); !held.ok()) return end(held);
         writer_.Finish(response_, ended(status), tag());
     }
     void end(const grpc::Status& status) override { writer_.FinishWithError(ended(status), tag()); }
@@ -134,25 +158,13 @@ std::unique_ptr<CallService> make_blobs(CallContext& context);
 std::unique_ptr<CallService> make_byte_stream(CallContext& context);
 std::unique_ptr<CallService> make_health(CallContext& context);
 
+// Of one message that names many. What is named takes more memory here than on the wire.
+constexpr int grpc_most_entries = 65'536;
+
 grpc::Status status_of(const Refused& refused);
 grpc::Status invalid(const std::string& what);
 // Only SHA-256 is spoken; 0 is a client that says nothing.
 grpc::Status check_function(int digest_function);
 std::optional<BlobName> name_of(const reapi::Digest& digest);
-
-// Ends a call that takes too long. The call and its context may be gone when the time comes.
-class CallTimer {
-public:
-    CallTimer(grpc::ServerContext* context, std::chrono::seconds after);
-    ~CallTimer();
-
-private:
-    struct Shared {
-        std::mutex mutex;
-        grpc::ServerContext* context;
-    };
-    std::shared_ptr<Shared> shared_;
-    grpc::Alarm alarm_;
-};
 
 }  // namespace kiln

@@ -14,10 +14,6 @@ constexpr uint64_t piece = 256 * 1024;       // of a download, a message
 constexpr uint64_t frame = 8 * 1024 * 1024;  // of a compressed one, a zstd frame
 constexpr int level = 3;
 
-std::chrono::seconds time_for(const CallContext& shared, uint64_t size) {
-    return shared.options.patience + std::chrono::seconds(size / std::max<uint64_t>(shared.options.slowest, 1));
-}
-
 using StreamService = bs::ByteStream::AsyncService;
 
 class ReadCall final : public Call {
@@ -31,7 +27,9 @@ private:
     void wait_for_next() override { new ReadCall(shared_, queue_, service_); }
     void begin() override {
         if (const grpc::Status ready = open(); !ready.ok()) return end(ready);
-        timer_.emplace(&context_, time_for(shared_, end_ - at_));
+        const uint64_t left = end_ - at_;
+        if (const grpc::Status held = hold_answer(std::min(left, zstd_ ? 2 * frame : piece)); !held.ok()) return end(held);
+        timer_.emplace(&context_, shared_.time_for(left));
         next();
     }
     void go_on(bool ok) override {
@@ -88,7 +86,6 @@ private:
     StreamService& service_;
     bs::ReadRequest request_;
     grpc::ServerAsyncWriter<bs::ReadResponse> writer_{&context_};
-    std::optional<CallTimer> timer_;
     BlobFile file_;
     bool zstd_ = false;
     uint64_t at_ = 0, end_ = 0;
@@ -139,12 +136,12 @@ private:
         name_ = *name;
         first_ = request_.resource_name();
         if (caller_->may(Role::read, name->instance)) {
-            const auto there = shared_.service.has_blob(*caller_, name->instance, name->blob);
+            const auto there = shared_.service.has_whole_blob(*caller_, name->instance, name->blob);
             there_ = there.ok() && *there;
             if (there_) return grpc::Status::OK;
         }
         // The time of a whole upload, now that its size is known.
-        timer_.emplace(&context_, time_for(shared_, name->blob.size));
+        timer_.emplace(&context_, shared_.time_for(name->blob.size));
         return grpc::Status::OK;
     }
 
@@ -158,7 +155,7 @@ private:
         // Memory is taken as the bytes arrive, not as they are announced.
         auto lease = shared_.service.lease(request_.data().size() * (name_->zstd ? 2 : 1));
         if (!lease.ok()) return status_of(lease.refused());
-        leases_.push_back(std::move(*lease));
+        lease_.join(std::move(*lease));
         const ByteView bytes = as_bytes(request_.data());
         received_.insert(received_.end(), bytes.begin(), bytes.end());
         in_ = received_.size();
@@ -170,7 +167,7 @@ private:
         if (name_->zstd) {
             auto lease = shared_.service.lease(name_->blob.size);
             if (!lease.ok()) return end(status_of(lease.refused()));
-            leases_.push_back(std::move(*lease));
+            lease_.join(std::move(*lease));
             if (zstd_unpack(received_, name_->blob.size, plain) != Unpacked::ok)
                 return end(invalid("the bytes are no zstd of that size"));
         }
@@ -188,12 +185,11 @@ private:
     bs::WriteRequest request_;
     bs::WriteResponse response_;
     grpc::ServerAsyncReader<bs::WriteResponse, bs::WriteRequest> reader_{&context_};
-    std::optional<CallTimer> timer_;
     std::optional<ResourceName> name_;
     std::string first_;
     bool there_ = false;
     Bytes received_;
-    std::vector<Service::Lease> leases_;
+    Service::Lease lease_;
 };
 
 class ByteStreamCalls final : public CallService {

@@ -155,6 +155,14 @@ Answer<bool> Service::has_blob(const Caller& caller, std::string_view name, cons
     return *found;
 }
 
+Answer<bool> Service::has_whole_blob(const Caller& caller, std::string_view name, const BlobName& blob) {
+    auto instance = enter(caller, name, Role::read);
+    if (!instance.ok()) return instance.refused();
+    const auto found = reader_of_blobs_.open(blob.digest);
+    if (!found.ok()) return failure(*instance, caller, found.error());
+    return found->has_value() && (*found)->size() == blob.size;
+}
+
 Answer<Written> Service::put_blob(const Caller& caller, std::string_view name, const BlobName& blob, ByteView bytes) {
     auto instance = enter(caller, name, Role::cas_write);
     if (!instance.ok()) return instance.refused();

@@ -97,6 +97,8 @@ public:
     // `caller` outlives it.
     Answer<BlobReads> reads(const Caller& caller, std::string_view instance);
     Answer<bool> has_blob(const Caller& caller, std::string_view instance, const BlobName& blob);
+    // The same of its bytes: a blob that was damaged on the disk is not there.
+    Answer<bool> has_whole_blob(const Caller& caller, std::string_view instance, const BlobName& blob);
     // `size`: what the client says it is, checked against the bytes.
     Answer<Written> put_blob(const Caller& caller, std::string_view instance, const BlobName& blob, ByteView bytes);
 
@@ -119,6 +121,13 @@ public:
         }
         ~Lease() {
             if (held_ != nullptr) *held_ -= bytes_;
+        }
+
+        // Both shares as one; they are of the same kind.
+        void join(Lease&& other) {
+            if (held_ == nullptr) held_ = other.held_;
+            bytes_ += std::exchange(other.bytes_, 0);
+            other.held_ = nullptr;
         }
 
     private:
