@@ -92,21 +92,18 @@ TEST(Functions, Cascades) {
         },
         number("x", linear(-2, 2)), number("y", linear(-2, 2)), number("z", linear(-0.5, 2)),
         number("w", linear(-0.5, 2).also({0})), integer("layer", 0, 3));
-    static const Matrices matrices("matrices", cascade_matrix);
-    cascades.declare(matrices.glsl);
     cascades
         .test(
-            "CascadeChoice c = choose_cascade(depth, 0.1, vec4(10.0, 20.0, 30.0, 40.0), 4, 0.2); int own = max(c.index, 0), next "
-            "= "
-            "max(c.next, 0); vec4 bias = vec4(1e-4, 2e-4, 3e-4, 4e-4); result = cascaded_shadow(maps, matrices[own] * "
-            "vec4(receiver, 1.0), matrices[next] * vec4(receiver, 1.0), vec2(bias[own], bias[next]), c);",
-            [compare](auto receiver, auto depth) {
+            "cascaded_shadow(maps, vec4(at, 1.0), vec4(next, 1.0), vec2(1e-4, 2e-4), choose_cascade(depth, 0.1, vec4(10.0, 20.0, "
+            "30.0, 40.0), 4, 0.2))",
+            [compare](auto at, auto next, auto depth) {
                 using T = decltype(depth);
                 const CascadeChoice<T> choice = choose_cascade(depth, T(0.1), Vec4<T>{T(10), T(20), T(30), T(40)}, 4, T(0.2));
-                return cascaded_shadow(compare, matrices.read<T>(), Vec4<T>{T(1e-4), T(2e-4), T(3e-4), T(4e-4)}, receiver,
-                                       choice);
+                return cascaded_shadow(compare, Vec4<T>{at.x, at.y, at.z, T(1)}, Vec4<T>{next.x, next.y, next.z, T(1)},
+                                       Vec2<T>{T(1e-4), T(2e-4)}, choice);
             },
-            vector3("receiver", linear(-30, 30)), number("depth", linear(0, 42).also({10, 20, 30, 40})))
+            vector3("at", linear(-1.2, 1.2)), vector3("next", linear(-1.2, 1.2)),
+            number("depth", linear(0, 42).also({10, 20, 30, 40})))
         .named("cascaded_shadow");
     cascades.run();
 }

@@ -7,21 +7,6 @@ namespace {
 
 using namespace reference;
 
-// Inverse transpose of an affine matrix: cofactors of its 3 x 3 part over the determinant, and what the translation makes of
-// them.
-Mat4<double> plane_matrix(int i) {
-    const Mat4<double> m = cascade_matrix(i);
-    const auto column = [&](int c) { return Vec3<double>{m.columns[c].x, m.columns[c].y, m.columns[c].z}; };
-    const double determinant = dot(column(0), cross(column(1), column(2)));
-    Mat4<double> out{};
-    for (int c = 0; c < 3; ++c) {
-        const Vec3<double> rows = cross(column((c + 1) % 3), column((c + 2) % 3)) / determinant;
-        out.columns[c] = {rows.x, rows.y, rows.z, -dot(rows, column(3))};
-    }
-    out.columns[3] = {0, 0, 0, 1};
-    return out;
-}
-
 TEST(Functions, PcfCascades) {
     Functions pcf("pcf_cascades.glsl");
     const DepthTexture texture = blocks(32);
@@ -42,23 +27,19 @@ TEST(Functions, PcfCascades) {
                number("width", logarithmic(1e-3, 0.5)))
             .named("cascade_pcf_" + std::to_string(n))
             .undecided(0.002);
-    static const Matrices matrices("matrices", cascade_matrix), planes("planes", plane_matrix);
-    pcf.declare(matrices.glsl + "\n" + planes.glsl);
-    // Near the slices' border, where the choice of one or two layers is the matter.
+    // Near the slices' border, where the choice of one or two layers is the matter; planes up to the steepest.
     pcf.test(
-           "CascadeChoice c = choose_cascade(depth, 0.1, vec4(10.0, 20.0, 30.0, 40.0), 4, 0.2); int own = max(c.index, 0), next "
-           "= "
-           "max(c.next, 0); vec4 width = vec4(0.2, 0.1, 0.05, 0.05), at = vec4(receiver, 1.0), plane = vec4(n, -dot(n, "
-           "receiver)); "
-           "result = cascaded_pcf(maps, matrices[own] * at, planes[own] * plane, matrices[next] * at, planes[next] * plane, "
-           "vec2(width[own], width[next]), 0.03125, 1e-4, c, 3);",
-           [compare](auto receiver, auto n, auto depth) {
+           "cascaded_pcf(maps, vec4(at, 1.0), vec4(n, 0.0), vec4(next, 1.0), vec4(n.yzx, 0.0), vec2(0.2, 0.1), 0.03125, 1e-4, "
+           "choose_cascade(depth, 0.1, vec4(10.0, 20.0, 30.0, 40.0), 4, 0.2), 3)",
+           [compare](auto at, auto next, auto n, auto depth) {
                using T = decltype(depth);
                const CascadeChoice<T> choice = choose_cascade(depth, T(0.1), Vec4<T>{T(10), T(20), T(30), T(40)}, 4, T(0.2));
-               return cascaded_pcf(compare, matrices.read<T>(), planes.read<T>(), Vec4<T>{T(0.2), T(0.1), T(0.05), T(0.05)},
-                                   T(0.03125), T(1e-4), receiver, n, choice, 3);
+               return cascaded_pcf(compare, Vec4<T>{at.x, at.y, at.z, T(1)}, Vec4<T>{n.x, n.y, n.z, T(0)},
+                                   Vec4<T>{next.x, next.y, next.z, T(1)}, Vec4<T>{n.y, n.z, n.x, T(0)}, Vec2<T>{T(0.2), T(0.1)},
+                                   T(0.03125), T(1e-4), choice, 3);
            },
-           vector3("receiver", linear(-30, 30)), unit("n"), number("depth", linear(0, 42).also({10, 20, 30, 40})))
+           vector3("at", linear(-1.2, 1.2)), vector3("next", linear(-1.2, 1.2)), unit("n"),
+           number("depth", linear(0, 42).also({10, 20, 30, 40})))
         .named("cascaded_pcf");
     pcf.run();
 }
