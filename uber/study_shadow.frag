@@ -73,7 +73,9 @@ float visibility() {
     const vec3 receiver = vec3(ndc, depth);
 #if FILTER == FILTER_CASCADES
     const CascadeChoice choice = choose_cascade(depth, 0.0, vec4(cascade_end, 1.0, 1.0, 1.0), 2, 0.0);
-    return cascaded_shadow(cascade_maps, cascade_view_projection, vec4(0.0), receiver, choice);
+    const int own = max(choice.index, 0), next = max(choice.next, 0);
+    return cascaded_shadow(cascade_maps, cascade_view_projection[own] * vec4(receiver, 1.0),
+                           cascade_view_projection[next] * vec4(receiver, 1.0), vec2(0.0), choice);
 #else
     return cascaded_shadow_lecture(cascade_maps, cascade_view_projection, receiver, 2, depth < cascade_end ? 0 : 1);
 #endif
