@@ -250,6 +250,11 @@ std::vector<Translated> cross_translate(WordView words, const std::vector<Target
         try {
             out[i].text = Translation(targets[i], *view, edits[i], often)
                               .run(std::forward<decltype(copy_or_tree)>(copy_or_tree), corrects_depth, slots.flat_blocks);
+            // The name that SPIRV-Cross makes up for what it does not know.
+            if (const size_t at = out[i].text.find("gl_BuiltIn_"); at != std::string::npos)
+                out[i] =
+                    refused("a built-in variable without a name in this language (SPIR-V's number " +
+                            out[i].text.substr(at + 11, out[i].text.find_first_not_of("0123456789", at + 11) - at - 11) + ")");
         } catch (const std::exception& problem) {
             out[i] = refused(problem.what());
         }

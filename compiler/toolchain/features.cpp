@@ -35,6 +35,7 @@ enum Std450 : uint32_t {
     std_interpolate_at_offset = 78,
 };
 
+constexpr uint16_t op_memory_barrier = 225;
 constexpr uint32_t capability_shader_non_uniform = 5301;
 constexpr uint32_t format_r32f = 3, format_r32i = 24, format_r32ui = 33;
 constexpr uint32_t operand_offset = 0x10, operand_const_offsets = 0x20;
@@ -75,7 +76,12 @@ private:
             if (c == capability_shader_non_uniform) set(Feature::non_uniform);
         if (v_.invocations > 1) set(Feature::geometry_invocations);
         if (v_.imports_debug_printf) set(Feature::debug_printf);
+        for (const uint32_t c : v_.capabilities)
+            if (c == 5363 || c == 5372 || c == 5378) set(Feature::interlock);  // FragmentShader*InterlockEXT
+        for (const uint32_t c : v_.capabilities)
+            if (c == 53) set(Feature::transform_feedback);
         if (v_.early_tests) set(Feature::early_tests);
+        if (v_.early_tests && r_.reflection.writes_depth) set(Feature::early_depth);
     }
 
     void image(const ir::Type& t) {
@@ -176,6 +182,7 @@ private:
         const ir::Constant& constant = v_.global(index).constant;
         if (constant.known && !constant.spec) return;
         if (variable.storage == ir::sc_uniform_constant) set(Feature::indexed_samplers);
+        if (variable.storage == ir::sc_output && r_.reflection.stage == Stage::fragment) set(Feature::indexed_outputs);
         if (variable.storage == ir::sc_uniform || variable.storage == ir::sc_storage_buffer) set(Feature::indexed_blocks);
     }
 
@@ -245,6 +252,9 @@ private:
                 break;
             case ir::op_ext_inst:
                 extended(i);
+                break;
+            case op_memory_barrier:
+                if (r_.reflection.stage != Stage::compute) set(Feature::memory_barrier);
                 break;
             case ir::op_iadd_carry:
             case ir::op_isub_borrow:

@@ -74,6 +74,11 @@ constexpr Limit limits[] = {
     {Feature::debug_printf, "debugPrintfEXT", never, never, never, never},
     {Feature::geometry_invocations, "several invocations of a geometry shader", 400, 0, 0, 0},
     {Feature::non_uniform, "nonuniformEXT", never, never, 0, 0},
+    {Feature::interlock, "a fragment shader interlock", 450, never, 0, 0},
+    {Feature::early_depth, "gl_FragDepth together with early_fragment_tests", 0, never, 0, 0},
+    {Feature::indexed_outputs, "an array of fragment outputs with an index that is no constant", 0, never, 0, 0},
+    {Feature::memory_barrier, "barriers of memory outside compute shaders", 420, 310, 0, 0},
+    {Feature::transform_feedback, "layouts of transform feedback", 440, 0, 0, 0},
 };
 
 // Which stages we can hand over in a language as it is. Metal's and HLSL's geometry and tessellation stages are shaped

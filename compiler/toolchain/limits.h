@@ -59,6 +59,11 @@ enum class Feature : uint8_t {
     debug_printf,
     geometry_invocations,
     non_uniform,
+    interlock,
+    early_depth,
+    indexed_outputs,
+    memory_barrier,
+    transform_feedback,
     count_
 };
 

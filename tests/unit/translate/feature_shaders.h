@@ -924,6 +924,36 @@ gl_Position=p[gl_VertexIndex]+textureLod(h,vec2(0),0.);
 void main(){
 gl_Position=vec4(gl_ViewIndex);
 })"},
+    {Stage::fragment, "earlydepth", R"(layout(early_fragment_tests) in; layout(location=0) out vec4 o;
+layout(location=0) in vec4 v;
+void main(){
+gl_FragDepth=v.x; o=v;
+})"},
+    {Stage::fragment, "outindex",
+     R"(layout(location=0) out vec4 o[4]; layout(location=0) in vec4 v; layout(location=1) flat in int n;
+void main(){
+o[0]=o[1]=o[2]=o[3]=v; o[n]=v*2.0;
+})"},
+    {Stage::fragment, "interlock", R"(#extension GL_ARB_fragment_shader_interlock:require
+layout(pixel_interlock_ordered) in; layout(binding=0) buffer B{uint n;}; layout(location=0) out vec4 o;
+void main(){
+beginInvocationInterlockARB(); n+=1u; endInvocationInterlockARB(); o=vec4(1);
+})"},
+    {Stage::fragment, "fragsize", R"(#extension GL_EXT_fragment_invocation_density:require
+layout(location=0) out vec4 o;
+void main(){
+o=vec4(gl_FragSizeEXT,gl_FragInvocationCountEXT,1);
+})"},
+    {Stage::vertex, "vbarrier", R"(layout(location=0) in vec4 p;
+void main(){
+gl_Position=p; memoryBarrier(); gl_Position.x=1.0;
+})"},
+    {Stage::vertex, "vxfb",
+     R"(layout(location=0) in vec4 p; layout(xfb_buffer=0,xfb_offset=0,xfb_stride=16,location=0) out vec4 q;
+out gl_PerVertex{layout(xfb_buffer=1,xfb_offset=0,xfb_stride=16) vec4 gl_Position;};
+void main(){
+gl_Position=p; q=p;
+})"},
 };
 
 }  // namespace kiln
