@@ -20,7 +20,7 @@ layout(std140, set = 0, binding = 1) uniform Light {
 };
 
 layout(std140, set = 0, binding = 2) uniform Shadow {
-    mat4 shadow_view_projection;    // world to the light's clip space; directional and spot
+    mat4 shadow_view_projection;    // world to the light's clip space, in w the view distance; directional and spot
     float shadow_near;              // metres, > 0; point; pcss, vssm
     float shadow_far;               // metres, > shadow_near; depth's range where directional; point; pcss, vssm
     float shadow_texel;             // metres; side of one shadow-map texel where the light's clip w is 1

@@ -89,9 +89,9 @@ float light_visibility(vec3 position, vec3 n, vec3 l) {
                         vec2(cascade_filter[own], cascade_filter[next]), cascade_texel_uv, cascade_quantum, choice, PCF_TAPS);
 #endif
 #elif LIGHT_TYPE == LIGHT_POINT && SHADOW == SHADOW_HARD
-    const vec3 away = abs(position - light_position);
-    const float texel = shadow_texel * max_component(away);
-    const vec3 receiver = offset_shadow_receiver(position, n, dot(n, l), texel);
+    const vec3 away = position - light_position;
+    const float cosine = cube_axis_cosine(away, n, shadow_texel);
+    const vec3 receiver = offset_shadow_receiver(position, n, cosine, shadow_texel * max_component(abs(away)));
     return shadow_factor_cube(shadow_cube, receiver - light_position, shadow_near, shadow_far, shadow_depth_bias);
 #elif LIGHT_TYPE == LIGHT_POINT
     const vec3 from_light = position - light_position;
@@ -99,8 +99,14 @@ float light_visibility(vec3 position, vec3 n, vec3 l) {
     return vsm_factor(moments, max_component(abs(from_light)), moments_far, moments_reference, moments_least,
                       moments_bleeding);
 #elif SHADOW == SHADOW_HARD
-    const float w = (shadow_view_projection * vec4(position, 1.0)).w;
-    const vec3 receiver = offset_shadow_receiver(position, n, dot(n, l), shadow_texel * max(w, 0.0));
+#if LIGHT_TYPE == LIGHT_DIRECTIONAL
+    const float cosine = dot(n, l);    // the light's direction is the map's axis
+    const float w = 1.0;
+#else
+    const float cosine = perspective_axis_cosine(shadow_view_projection, n);
+    const float w = max((shadow_view_projection * vec4(position, 1.0)).w, 0.0);
+#endif
+    const vec3 receiver = offset_shadow_receiver(position, n, cosine, shadow_texel * w);
     return shadow_factor_2d(shadow_map, shadow_view_projection * vec4(receiver, 1.0), shadow_depth_bias);
 #else
     const vec4 clip = shadow_view_projection * vec4(position, 1.0);

@@ -25,10 +25,24 @@ std::shared_ptr<ImageData> depth_image(ImageDim dim, uint32_t side, const std::v
 TEST(Functions, ShadowMap) {
     Functions shadow("shadow_map.glsl");
     shadow.test(
-        "offset_shadow_receiver(position, n, n_dot_l, texel)",
-        [](auto position, auto n, auto n_dot_l, auto texel) { return offset_shadow_receiver(position, n, n_dot_l, texel); },
-        vector3("position", either_sign(1e-2, 1e4)), unit("n"), number("n_dot_l", linear(-1, 1)),
+        "offset_shadow_receiver(position, n, cosine, texel)",
+        [](auto position, auto n, auto cosine, auto texel) { return offset_shadow_receiver(position, n, cosine, texel); },
+        vector3("position", either_sign(1e-2, 1e4)), unit("n"), number("cosine", linear(-1, 1)),
         number("texel", logarithmic(1e-4, 10)));
+    shadow.test(
+        "cube_axis_cosine(from_light, n, texel)",
+        [](auto from_light, auto n, auto texel) { return cube_axis_cosine(from_light, n, texel); },
+        vector3("from_light", either_sign(1e-2, 1e4)), unit("n"), number("texel", logarithmic(1e-4, 1)));
+    shadow.test(
+        "perspective_axis_cosine(mat4(vec4(0.0, 0.0, 0.0, row.x), vec4(0.0, 0.0, 0.0, row.y), vec4(0.0, 0.0, 0.0, row.z), "
+        "vec4(1.0)), n)",
+        [](auto row, auto n) {
+            using T = decltype(row.x);
+            const T o(0);
+            return perspective_axis_cosine(
+                Mat4<T>{{{o, o, o, row.x}, {o, o, o, row.y}, {o, o, o, row.z}, {T(1), T(1), T(1), T(1)}}}, n);
+        },
+        unit("row"), unit("n"));
 
     std::mt19937 random(104);
     std::vector<float> texels(8 * 8);

@@ -156,6 +156,34 @@ TEST(ClosedForm, WrongPenumbrasAreCaught) {
     }
 }
 
+// ---- a floor that faces its lamp, where the map does not ----
+
+// Nothing stands over the floor, and the lamp is straight above; its map is 45 degrees off, so that the floor's depth rises over
+// it. A bias of two quanta, texels of 8 cm.
+TEST(ClosedForm, FloorUnderAMapThatLeans) {
+    Scene s = lamp_scene({});
+    SurfaceBlocks& b = s.blocks;
+    b.light_direction = f32(normalize(V3{0.7, -0.7, 0.1}));
+    b.light_cos_outer = -0.5;
+    b.shadow_view_projection = f32(perspective(std::atan(1.0), lamp_near, lamp_far) *
+                                   look_at(b.light_position, b.light_position + b.light_direction, {0, 0, -1}));
+    b.shadow_texel = f32(2.0 / map_side);
+    b.shadow_depth_bias = 2 * 0x1p-23;
+    Triangles world;
+    for (size_t i = 0; i < s.mesh.vertices.size(); i += 3)
+        world.push_back({s.mesh.vertices[i].position, s.mesh.vertices[i + 1].position, s.mesh.vertices[i + 2].position});
+    s.maps.shadow_map = std::make_shared<DepthMap>(map_side, map_side, depths_of(world, b.shadow_view_projection, map_side));
+    const auto shadowed = [&](const Edits& edits) {
+        size_t count = 0;
+        for (const Seen& at : visibility(s, with(spot, "shadow", "hard"), edits)) count += at.visible < 1 - 1e-5 ? 1 : 0;
+        return count;
+    };
+    EXPECT_EQ(shadowed({}), 0u);
+    const size_t wrong = shadowed({{"= perspective_axis_cosine(shadow_view_projection, n)", "= dot(n, l)"}});
+    EXPECT_GT(wrong, 1000u);
+    std::printf("KILN_IMAGES a floor under a leaning map, offset by the sine to the light: %zu pixels shadowed\n", wrong);
+}
+
 // ---- occluders above each other ----
 
 // Two depths d1 < d2 before a receiver at t: whatever share of each a filter takes, Cantelli's bound is at most this.

@@ -7,10 +7,29 @@
 
 namespace kiln::reference {
 
-// position + n sqrt(2) texel sin(a), where n_dot_l is cos(a).
+// position + n 3/2 texel sin(a), where n_dot_axis is cos(a), a between n and the map's axis.
 template <class T>
-Vec3<T> offset_shadow_receiver(const Vec3<T>& position, const Vec3<T>& n, const T& n_dot_l, const T& texel) {
-    return position + n * (T(1.41421356) * texel * sqrt(saturate(T(1) - n_dot_l * n_dot_l)));
+Vec3<T> offset_shadow_receiver(const Vec3<T>& position, const Vec3<T>& n, const T& n_dot_axis, const T& texel) {
+    return position + n * (T(1.5) * texel * sqrt(saturate(T(1) - n_dot_axis * n_dot_axis)));
+}
+
+template <class T>
+T perspective_axis_cosine(const Mat4<T>& clip_of_world, const Vec3<T>& n) {
+    const auto& c = clip_of_world.columns;
+    return dot(n, Vec3<T>{c[0].w, c[1].w, c[2].w});
+}
+
+// The least of |n|'s components along the axes of the faces within reach.
+template <class T>
+T cube_axis_cosine(const Vec3<T>& from_light, const Vec3<T>& n, const T& texel) {
+    const auto size = [](const T& x) { return abs(x); };
+    const Vec3<T> a = map(from_light, size), along = map(n, size);
+    const T reached = max_component(a) * (T(1) - T(4) * texel);
+    T least(1);
+    if (a.x >= reached) least = min(least, along.x);
+    if (a.y >= reached) least = min(least, along.y);
+    if (a.z >= reached) least = min(least, along.z);
+    return least;
 }
 
 template <class T, class Map>

@@ -38,14 +38,14 @@ T cascaded_visibility(const SurfaceAxes& axes, const SurfaceBlocks& b, const Map
 
 // maps.shadow_cube(direction, depth), maps.moments_cube(direction).
 template <class T, class Maps>
-T point_visibility(const SurfaceAxes& axes, const SurfaceBlocks& b, const Maps& maps, const Vec3<T>& position, const Vec3<T>& n,
-                   const Vec3<T>& l) {
+T point_visibility(const SurfaceAxes& axes, const SurfaceBlocks& b, const Maps& maps, const Vec3<T>& position, const Vec3<T>& n) {
     const Vec3<T> light = read<T>(b.light_position), from_light = position - light;
     const T away = max_component(map(from_light, [](const T& x) { return abs(x); }));
     if (axes.shadow == SurfaceShadow::vsm)
         return vsm_factor(maps.moments_cube(from_light), away, T(b.moments_far), T(b.moments_reference), T(b.moments_least),
                           T(b.moments_bleeding));
-    const Vec3<T> receiver = offset_shadow_receiver(position, n, dot(n, l), T(b.shadow_texel) * away);
+    const T cosine = cube_axis_cosine(from_light, n, T(b.shadow_texel));
+    const Vec3<T> receiver = offset_shadow_receiver(position, n, cosine, T(b.shadow_texel) * away);
     return shadow_factor_cube(maps.shadow_cube, receiver - light, T(b.shadow_near), T(b.shadow_far), T(b.shadow_depth_bias));
 }
 
@@ -55,7 +55,7 @@ T light_visibility(const SurfaceAxes& axes, const SurfaceBlocks& b, const Maps& 
                    const Vec3<T>& l) {
     if (axes.shadow == SurfaceShadow::none) return T(1);
     if (axes.cascades > 1) return cascaded_visibility(axes, b, maps, position, n, l);
-    if (axes.light == SurfaceLight::point) return point_visibility(axes, b, maps, position, n, l);
+    if (axes.light == SurfaceLight::point) return point_visibility(axes, b, maps, position, n);
     const bool directional = axes.light == SurfaceLight::directional;
     const Mat4<T> matrix = read<T>(b.shadow_view_projection);
     const Vec4<T> clip = matrix * Vec4<T>{position.x, position.y, position.z, T(1)};
@@ -64,7 +64,8 @@ T light_visibility(const SurfaceAxes& axes, const SurfaceBlocks& b, const Maps& 
     const T near(b.shadow_near), far(b.shadow_far), extent(b.shadow_extent), texel(b.shadow_texel_uv), size(b.light_size);
     const T reference(b.moments_reference), least(b.moments_least), bleeding(b.moments_bleeding);
     if (axes.shadow == SurfaceShadow::hard) {
-        const Vec3<T> r = offset_shadow_receiver(position, n, dot(n, l), T(b.shadow_texel) * max(clip.w, T(0)));
+        const T cosine = directional ? dot(n, l) : perspective_axis_cosine(matrix, n);
+        const Vec3<T> r = offset_shadow_receiver(position, n, cosine, T(b.shadow_texel) * max(clip.w, T(0)));
         return shadow_factor_2d(compare, matrix * Vec4<T>{r.x, r.y, r.z, T(1)}, T(b.shadow_depth_bias));
     }
     if (axes.shadow == SurfaceShadow::lecture) return shadow_factor_lecture(depth_at, clip);
