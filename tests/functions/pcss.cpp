@@ -51,6 +51,12 @@ TEST(Functions, Pcss) {
                 integer("i", 0, count - 1), number("turn", linear(0, 0.999999)))
             .named("pcss_disk_tap_" + n);
     }
+    // Every count that is allowed, as the table of steps has them.
+    pcss.test(
+            "pcss_square_tap(i % count, count, vec2(0.0))",
+            [](int i, int count, auto one) { return pcss_square_tap(i % count, count, Vec2<decltype(one)>{}); },
+            integer("i", 0, 255), integer("count", 4, 256), number("one", values({1})))
+        .named("pcss_square_tap");
 
     const LightView view{1, 20, 2};
     const DepthTexture texture = depth_texture(square_scene(6), view, 64);

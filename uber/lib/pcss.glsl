@@ -52,11 +52,23 @@ float pcss_penumbra_width_directional(float receiver, float blocker, float angul
     return clamp(angular_size * (receiver - blocker), least, most);
 }
 
+// Steps of lattices of 1 to 256 points, four a word from the low byte on: coprime to the count, so that the rows are as many as
+// the columns, and of those the least whose shortest vector is longest.
+const uint pcss_steps[64] = uint[64](
+    0x01010101u, 0x03020102u, 0x05030302u, 0x03040305u, 0x03040504u, 0x05050508u, 0x05050507u, 0x070c070cu,
+    0x05060d07u, 0x07070706u, 0x070c0509u, 0x07070713u, 0x07070709u, 0x09100708u, 0x07091110u, 0x13081708u,
+    0x09081908u, 0x0b150908u, 0x09081f10u, 0x09091122u, 0x190b091fu, 0x090a090du, 0x091b0b22u, 0x0b0b0b0au,
+    0x090a0d0au, 0x0b0c0b1eu, 0x0b0b0b0bu, 0x29140d1eu, 0x0b0c0b1fu, 0x0b0b0b35u, 0x0d0b3310u, 0x170c0b0cu,
+    0x0d1e2f23u, 0x0d1f1d33u, 0x0d0c0d0du, 0x1f0c3b2bu, 0x0d353d0cu, 0x0d0d0d0du, 0x1d182f23u, 0x313d0f24u,
+    0x0d320d25u, 0x0d240d4cu, 0x250d2710u, 0x3f2f0d0fu, 0x0d29370eu, 0x39221327u, 0x0f431d10u, 0x290e2919u,
+    0x110e550eu, 0x13253523u, 0x490f0f10u, 0x253d0f20u, 0x111c1138u, 0x1d101111u, 0x291d0f10u, 0x0f0f6167u,
+    0x3d1e6322u, 0x11101111u, 0x25101f10u, 0x131c1310u, 0x392b1547u, 0x11111110u, 0x2f4a1111u, 0x47102d10u
+);
+
 // Tap i of count over a square of width 1 about the centre: a rank-1 lattice. In projection on either axis count levels lie
-// 1 / count apart, shifted around the torus by jitter. For count = 16, 32, 64 the step is the one whose shortest vector is
-// longest. jitter: [0, 1)^2, 0 for none, else a hash of the pixel.
+// 1 / count apart, shifted around the torus by jitter. count: [4, 256]; jitter: [0, 1)^2, 0 for none, else a hash of the pixel.
 vec2 pcss_square_tap(int i, int count, vec2 jitter) {
-    const int step = count == 16 ? 5 : count == 32 ? 7 : count == 64 ? 19 : (count * 5 / 8) | 1;
+    const int step = int((pcss_steps[(count - 1) / 4] >> (8 * ((count - 1) % 4))) & 255u);
     const vec2 cell = (vec2(i, (i * step) % count) + 0.5) / float(count);
     return fract(cell + jitter) - 0.5;
 }

@@ -2,6 +2,9 @@
 // Percentage-closer soft shadows, as uber/lib/pcss.glsl names them. Depth is a callable uv -> depth, a comparison map one of
 // (uv, depth) -> 1 lit or 0. What the shader takes as macros stands in PcssTaps.
 
+#include <array>
+#include <numeric>
+
 #include "uber/reference/pcf.h"
 #include "uber/reference/shadow_receiver.h"
 
@@ -38,9 +41,32 @@ T pcss_penumbra_width_directional(const T& receiver, const T& blocker, const T& 
     return clamp(angular_size * (receiver - blocker), least, most);
 }
 
+// The least step coprime to the count whose lattice's shortest vector on the torus is longest.
+inline int pcss_step(int count) {
+    const auto search = [](int n) {
+        int best = 1, longest = 0;
+        for (int step = 1; step <= n / 2; ++step) {
+            if (std::gcd(step, n) != 1) continue;
+            int shortest = n * n;
+            for (int i = 1; i < n; ++i) {
+                const int x = std::min(i, n - i), k = i * step % n, y = std::min(k, n - k);
+                shortest = std::min(shortest, x * x + y * y);
+            }
+            if (shortest > longest) longest = shortest, best = step;
+        }
+        return best;
+    };
+    static const std::array<int, 257> steps = [&] {
+        std::array<int, 257> out{};
+        for (int n = 1; n <= 256; ++n) out[static_cast<size_t>(n)] = search(n);
+        return out;
+    }();
+    return steps[static_cast<size_t>(count)];
+}
+
 template <class T>
 Vec2<T> pcss_square_tap(int i, int count, const Vec2<T>& jitter) {
-    const int step = count == 16 ? 5 : count == 32 ? 7 : count == 64 ? 19 : (count * 5 / 8) | 1;
+    const int step = pcss_step(count);
     const auto cell = [&](int k, const T& shift) { return fract((T(k) + T(0.5)) / T(count) + shift) - T(0.5); };
     return {cell(i, jitter.x), cell((i * step) % count, jitter.y)};
 }
