@@ -22,7 +22,19 @@ void Diags::sort() {
             d.place.file, d.place.line, d.place.column, -static_cast<int>(d.severity), d.message);
     };
     std::stable_sort(list_.begin(), list_.end(), [&](const Diag& a, const Diag& b) { return key(a) < key(b); });
-    list_.erase(std::unique(list_.begin(), list_.end()), list_.end());
+    // One mistake in a file that several shaders read is said once, with the variants of each.
+    size_t kept = 0;
+    for (size_t i = 0; i < list_.size(); ++i) {
+        if (kept != 0 && key(list_[kept - 1]) == key(list_[i]) && list_[kept - 1].source_line == list_[i].source_line) {
+            std::vector<std::string>& notes = list_[kept - 1].notes;
+            for (std::string& note : list_[i].notes)
+                if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
+        } else {
+            if (kept != i) list_[kept] = std::move(list_[i]);
+            ++kept;
+        }
+    }
+    list_.resize(kept);
     errors_ = static_cast<size_t>(
         std::count_if(list_.begin(), list_.end(), [](const Diag& d) { return d.severity == Severity::error; }));
 }

@@ -42,7 +42,7 @@ public:
     size_t errors() const { return errors_; }
     bool empty() const { return list_.empty(); }
     const std::vector<Diag>& list() const { return list_; }
-    // Orders by file, line, column, severity, message and drops exact repeats. Keeps discovery order among equals.
+    // Orders by file, line, column, severity, message. Equal ones become one, with the notes of all, each once.
     void sort();
 
 private:

@@ -45,6 +45,17 @@ TEST(Diags, SortDropsRepeatsAndOrdersByPlace) {
     EXPECT_EQ(diags.errors(), 2u);
 }
 
+TEST(Diags, SortJoinsTheNotesOfEqualMistakes) {
+    Diags diags;
+    diags.error({"a", 1, 1}, "x", "line").notes = {"in A", "hint"};
+    diags.error({"a", 1, 1}, "y", "line").notes = {"in C"};
+    diags.error({"a", 1, 1}, "x", "line").notes = {"in B", "hint"};
+    diags.sort();
+    ASSERT_EQ(diags.list().size(), 2u);
+    EXPECT_EQ(diags.list()[0].notes, (std::vector<std::string>{"in A", "hint", "in B"}));
+    EXPECT_EQ(diags.errors(), 2u);
+}
+
 TEST(Nearest, FindsAMisspeltNameAndRefusesAStranger) {
     const std::vector<std::string> names{"light", "material", "lightmap"};
     EXPECT_EQ(nearest("ligth", names), "light");
