@@ -79,9 +79,12 @@ float light_visibility(vec3 position, vec3 n, vec3 l) {
     const CascadeChoice choice = choose_cascade(depth, cascade_start, cascade_ends, CASCADES, cascade_band);
     const int own = max(choice.index, 0), next = max(choice.next, 0);
 #if SHADOW == SHADOW_HARD
-    const vec4 receiver = vec4(offset_shadow_receiver(position, n, dot(n, l), cascade_texel[own]), 1.0);
-    return cascaded_shadow(cascade_maps, cascade_view_projection[own] * receiver, cascade_view_projection[next] * receiver,
-                           vec2(cascade_bias[own], cascade_bias[next]), choice);
+    // Each layer has an offset: what a fine layer's texels ask leaves the receiver in its own shadow in a coarser one.
+    const vec3 in_own = offset_shadow_receiver(position, n, dot(n, l), cascade_texel[own]);
+    const vec3 in_next = offset_shadow_receiver(position, n, dot(n, l), cascade_texel[next]);
+    return cascaded_shadow(cascade_maps, cascade_view_projection[own] * vec4(in_own, 1.0),
+                           cascade_view_projection[next] * vec4(in_next, 1.0), vec2(cascade_bias[own], cascade_bias[next]),
+                           choice);
 #else
     const vec4 receiver = vec4(position, 1.0), plane = vec4(n, -dot(n, position));
     return cascaded_pcf(cascade_maps, cascade_view_projection[own] * receiver, cascade_plane_of_world[own] * plane,

@@ -108,7 +108,7 @@ void set_cascades(SurfaceBlocks& b, const V3& direction) {
     }
     b.cascade_ends = map(ends, [](double x) { return f32(x); });
     b.cascade_texel = {texels[0], texels[1], texels[2], texels[3]};
-    b.cascade_bias = map(V4{3e-4, 3e-4, 2e-4, 2e-4}, [](double x) { return f32(x); });
+    b.cascade_bias = {0x1p-19, 0x1p-19, 0x1p-19, 0x1p-19};
     b.cascade_filter = map(V4{4, 3.5, 3, 2.5}, [](double x) { return f32(x / cascade_size); });
     b.cascade_start = start;
     b.cascade_band = f32(0.2);

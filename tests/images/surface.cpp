@@ -156,6 +156,8 @@ TEST(Images, WrongShadersAreCaught) {
         {"a flipped shadow map", "ndc.xy * 0.5 + 0.5", "ndc.xy * vec2(0.5, -0.5) + 0.5", with(sun, "shadow", "hard")},
         {"a shadow's offset by the sine to a point light", "cube_axis_cosine(away, n, shadow_texel)", "dot(n, l)",
          with(pbr, "shadow", "hard")},
+        {"a layer's receiver offset by another's texels", "dot(n, l), cascade_texel[next])", "dot(n, l), cascade_texel[own])",
+         with(with(sun, "shadow", "hard"), "cascades", "4")},
         {"ratios over 127", "texel * 2.0 - 1.0", "texel * (255.0 / 127.0) - 1.0", with(pbr, "lightmap", "sh_hq")},
         {"a receiver's plane by the normal map", "light_visibility(world_position, geometric_normal(), l)",
          "light_visibility(world_position, n, l)", with(with(sun, "shadow", "pcf5"), "normal_map", "true")},

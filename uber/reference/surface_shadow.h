@@ -29,8 +29,13 @@ T cascaded_visibility(const SurfaceAxes& axes, const SurfaceBlocks& b, const Map
     }
     if (axes.shadow == SurfaceShadow::hard) {
         const double texels[] = {b.cascade_texel.x, b.cascade_texel.y, b.cascade_texel.z, b.cascade_texel.w};
-        const Vec3<T> receiver = offset_shadow_receiver(position, n, dot(n, l), T(texels[choice.index]));
-        return cascaded_shadow(compare, matrices, read<T>(b.cascade_bias), receiver, choice);
+        const double biases[] = {b.cascade_bias.x, b.cascade_bias.y, b.cascade_bias.z, b.cascade_bias.w};
+        const auto own = static_cast<size_t>(choice.index), next = static_cast<size_t>(std::max(choice.next, 0));
+        const auto clip = [&](size_t layer) {
+            const Vec3<T> r = offset_shadow_receiver(position, n, dot(n, l), T(texels[layer]));
+            return matrices[layer] * Vec4<T>{r.x, r.y, r.z, T(1)};
+        };
+        return cascaded_shadow(compare, clip(own), clip(next), Vec2<T>{T(biases[own]), T(biases[next])}, choice);
     }
     return cascaded_pcf(compare, matrices, planes, read<T>(b.cascade_filter), T(b.cascade_texel_uv), T(b.cascade_quantum),
                         position, n, choice, pcf_taps(axes.shadow));
