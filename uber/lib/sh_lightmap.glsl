@@ -17,7 +17,7 @@ vec3 encode_sh_ratio(vec3 m0, vec3 m1) {
 
 // Irradiance of a lightmap without directions, for the normal that it was baked with. An RGBA8 texture with sRGB transfer
 // holds E / range: its sampler has made the texel linear already, and `range` is the largest irradiance in the map, W/m2.
-// Half a step is 2e-3 of the value at the top and all of it below range / 6600.
+// Half a step is 4.5e-3 of the value at the top, where the curve rises by 2.27, and all of it below range / 6600.
 vec3 decode_flat_lightmap(vec3 texel, float range) {
     return texel * range;
 }
