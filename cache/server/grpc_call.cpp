@@ -62,6 +62,7 @@ void Call::on_event(bool ok) {
     }
     if (state_ == State::runs) return shared_.work.post([this, ok] { guarded([this, ok] { go_on(ok); }); });
     state_ = State::runs;
+    ++shared_.under_way;
     wait_for_next();
     began_ = std::chrono::steady_clock::now();
     caller_ = shared_.caller(context_);

@@ -9,6 +9,7 @@
 #include <grpcpp/grpcpp.h>
 #include <remote_execution.grpc.pb.h>
 
+#include <atomic>
 #include <mutex>
 #include <optional>
 #include <type_traits>
@@ -42,6 +43,7 @@ struct CallContext {
     const std::function<std::shared_ptr<const Access>()> access;
     const GrpcOptions options;
     WorkPool work;
+    std::atomic<size_t> under_way{0};  // calls that have begun and not been deleted
 
     // By the metadata "authorization: Bearer T" (or Basic); a field that is neither is no token.
     std::shared_ptr<const Caller> caller(const grpc::ServerContext& context) const;
@@ -61,7 +63,9 @@ protected:
     // `method` outlives the call.
     Call(CallContext& shared, grpc::ServerCompletionQueue& queue, const char* method)
         : shared_(shared), queue_(queue), method_(method) {}
-    virtual ~Call() = default;
+    virtual ~Call() {
+        if (state_ != State::waits) --shared_.under_way;
+    }
     virtual void wait_for_next() = 0;               // makes the object that waits for the next call of this method
     virtual bool begin_at_once() { return false; }  // without waiting for anything; false: begin() has to
     virtual void begin() = 0;

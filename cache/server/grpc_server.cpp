@@ -36,6 +36,8 @@ void GrpcServer::drain(std::chrono::seconds patience) {
         calls_->server->Shutdown(std::chrono::system_clock::now() + patience);
         calls_->server->Wait();
     }
+    // A call that was cut is over for gRPC and has yet to hear of it, and its answer needs the queue.
+    while (calls_->context->under_way != 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     for (const auto& queue : calls_->queues) queue->Shutdown();
     for (std::thread& thread : calls_->threads) thread.join();
     calls_->threads.clear();
