@@ -86,14 +86,17 @@ Result<std::optional<Bytes>> DiskStore::get(Keyspace space, const Digest& key) {
 }
 
 Status DiskStore::put(Keyspace space, const Digest& key, ByteView bytes) {
-    const auto refuse = [&](Error error) -> Status {
+    if (space != Keyspace::blob) return keep(space, key, bytes);
+    if (const auto blob = HashedBlob::of(key, bytes)) return put(*blob);
+    ++failures_;
+    return environment_error("cache: a blob does not match its name " + key.hex());
+}
+
+Status DiskStore::keep(Keyspace space, const Digest& key, ByteView bytes) {
+    if (bytes.size() > largest_payload) {
         ++failures_;
-        return error;
-    };
-    if (bytes.size() > largest_payload)
-        return refuse(environment_error("cache: an entry of " + std::to_string(bytes.size()) + " bytes is too large"));
-    if (space == Keyspace::blob && sha256(bytes) != key)
-        return refuse(environment_error("cache: a blob does not match its name " + key.hex()));
+        return environment_error("cache: an entry of " + std::to_string(bytes.size()) + " bytes is too large");
+    }
     const Bytes head = space == Keyspace::action ? action_head(key, bytes) : Bytes();
     Reading there = read(space, key, true);
     if (there.is == Reading::Is::damaged) there = mended(space, key);

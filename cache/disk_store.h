@@ -29,6 +29,23 @@
 
 namespace kiln {
 
+// Bytes that were found to hash to their name, for a store that need not hash them again. They outlive it and do not change.
+class HashedBlob {
+public:
+    // nullopt: they do not.
+    static std::optional<HashedBlob> of(const Digest& name, ByteView bytes) {
+        if (sha256(bytes) != name) return std::nullopt;
+        return HashedBlob(name, bytes);
+    }
+    const Digest& name() const { return name_; }
+    ByteView bytes() const { return bytes_; }
+
+private:
+    HashedBlob(const Digest& name, ByteView bytes) : name_(name), bytes_(bytes) {}
+    Digest name_;
+    ByteView bytes_;
+};
+
 // $XDG_CACHE_HOME/kiln, else ~/.cache/kiln; empty when neither variable holds an absolute path.
 std::string default_cache_folder();
 
@@ -71,6 +88,7 @@ public:
     Result<std::optional<Bytes>> get(Keyspace space, const Digest& key) override;
     // What is there with the same bytes is not written again; an action record with others is replaced.
     Status put(Keyspace space, const Digest& key, ByteView bytes) override;
+    Status put(const HashedBlob& blob) { return keep(Keyspace::blob, blob.name(), blob.bytes()); }
     // The size of an entry that is there, which counts as a use of it. Its bytes are not verified.
     Result<std::optional<uint64_t>> find(Keyspace space, const Digest& key);
 
@@ -92,6 +110,7 @@ private:
     struct Reading;
     DiskStore(std::string folder, DiskOptions options);
     Reading read(Keyspace space, const Digest& key, bool use) const;
+    Status keep(Keyspace space, const Digest& key, ByteView bytes);
     Result<std::optional<Bytes>> load(Keyspace space, const Digest& key);
     Reading set_aside(Keyspace space, const Digest& key, std::string& kept);
     Reading mended(Keyspace space, const Digest& key);

@@ -19,8 +19,8 @@ ORDER = ["base", "runtime", "manifest", "space", "split", "reflect", "toolchain"
 THIRD_PARTY = {
     "xxhash": {"compiler/base/xxh3.cpp"},
     "openssl/": {"compiler/base/sha256.cpp", "cache/client/signature.cpp"},
-    # Beast's connection is a template over its stream (TCP, TLS), hence a header beside the one source file.
-    "boost/": {"cache/server/http_server.cpp", "cache/server/http_connection.h"},
+    # Beast's connection is a template over its stream (TCP, TLS), hence the headers.
+    "boost/": {"cache/server/http_server.cpp", "cache/server/http_connection.h", "cache/server/http_head.h", "cache/server/http_loop.h", "cache/server/tls_stream.h"},
     # Services derive from generated classes, a source each; what they share is in the header.
     "grpcpp/": {"cache/server/grpc_call.h", "cache/server/grpc_server.cpp", "cache/client/grpc_calls.h", "tools/bench/batch_read_bench.cpp"},
     "grpc/": {"cache/client/grpc_remote.cpp"},

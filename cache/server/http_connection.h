@@ -1,87 +1,24 @@
 #pragma once
-// One connection of the HTTP front, over plain TCP or TLS. Belongs to http_server.cpp; the only header with Beast in it, since
-// the connection is a template over its stream. Everything runs on the thread of the connection's loop but HttpFace::answer()
-// of work that may block, which runs in the pool.
+// One connection of the HTTP front, over plain TCP or TLS. Belongs to http_server.cpp; a header since the connection is a
+// template over its stream. Everything runs on the thread of the connection's loop but HttpFace::answer() of work that may block,
+// which runs in the pool.
 
-#include <boost/asio/dispatch.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/ssl/stream.hpp>
-#include <boost/asio/steady_timer.hpp>
-#include <boost/asio/thread_pool.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
-#include <boost/beast/http/buffer_body.hpp>
-#include <boost/beast/http/parser.hpp>
-#include <boost/beast/ssl/ssl_stream.hpp>
 
 #include <sys/sendfile.h>
 #include <sys/socket.h>
 #include <sys/uio.h>
 
 #include <exception>
-#include <unordered_set>
 
-#include "cache/server/http_server.h"
+#include "cache/server/http_head.h"
+#include "cache/server/http_loop.h"
+#include "cache/server/tls_stream.h"
 
 namespace kiln {
-
-namespace beast = boost::beast;
-namespace http = boost::beast::http;
-namespace net = boost::asio;
-
-class ConnectionBase;
-
-// A thread, its sockets, and the connections on it, which only that thread touches.
-struct HttpLoop {
-    std::unordered_set<ConnectionBase*> connections;
-    net::io_context context{1};  // its handlers own the connections: it goes first
-    net::steady_timer sweep{context};
-};
-
-struct HttpShared {
-    HttpFace& face;
-    Log& log;
-    const HttpOptions& options;
-    net::thread_pool& pool;
-    std::atomic<bool> draining{false};
-    std::atomic<uint64_t> accepted{0}, open{0}, over_cap{0}, out_of_files{0}, timeouts{0}, malformed{0}, handshakes_failed{0},
-        requests{0};
-};
-
-class ConnectionBase {
-public:
-    ConnectionBase(HttpShared& shared, HttpLoop& loop) : shared_(shared), loop_(loop) {
-        loop_.connections.insert(this);
-        ++shared_.open;
-    }
-    virtual ~ConnectionBase() {
-        loop_.connections.erase(this);
-        --shared_.open;
-    }
-    ConnectionBase(const ConnectionBase&) = delete;
-    ConnectionBase& operator=(const ConnectionBase&) = delete;
-    virtual void end() = 0;  // at once; pending operations fail
-    bool idle() const { return idle_; }
-    bool idle_too_long(std::chrono::steady_clock::time_point now) const { return idle_ && now >= idle_until_; }
-
-protected:
-    HttpShared& shared_;
-    HttpLoop& loop_;
-    bool idle_ = true;  // between requests
-    // A timer for each wait between requests would cost a small request two system calls: the loop looks now and then instead.
-    std::chrono::steady_clock::time_point idle_until_ = std::chrono::steady_clock::time_point::max();
-};
-
-// Of a head, what its grammar leaves open: whether the request's end is certain, and the fields that matter.
-struct HeadCheck {
-    unsigned status = 0;  // not 0: refuse with it
-    bool expects_continue = false, keep_alive = false;
-    HttpHead head;
-};
-HeadCheck check_head(const http::request_parser<http::buffer_body>& parser);
-bool has_folded_line(std::string_view head);
-std::string response_head(const HttpResponse& response, bool close);
 
 template <class Stream>
 class Connection final : public ConnectionBase, public std::enable_shared_from_this<Connection<Stream>> {
@@ -98,7 +35,7 @@ public:
     void run() {
         if constexpr (secure) {
             deadline(shared_.options.head_timeout);
-            stream_.async_handshake(net::ssl::stream_base::server, [self = this->shared_from_this()](beast::error_code failed) {
+            stream_.async_handshake([self = this->shared_from_this()](beast::error_code failed) {
                 if (failed)
                     ++self->shared_.handshakes_failed;
                 else
@@ -399,8 +336,7 @@ private:
             self->on_sent();
         };
         if constexpr (secure) {
-            // One buffer: of two, with the first empty or written and the second over 16 KiB, Beast 1.74 writes none and asio
-            // takes that for the end.
+            // One buffer, so that a small response is one record.
             if (first) head_.append(reinterpret_cast<const char*>(from), n);
             net::async_write(stream_, first ? net::const_buffer(net::buffer(head_)) : net::buffer(from, n), written);
         } else {

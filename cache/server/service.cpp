@@ -167,7 +167,8 @@ Answer<Written> Service::put_blob(const Caller& caller, std::string_view name, c
     auto instance = enter(caller, name, Role::cas_write);
     if (!instance.ok()) return instance.refused();
     if (bytes.size() > limits_.blob) return refuse(name, caller, Refusal::too_large, "the blob is larger than the server takes");
-    if (bytes.size() != blob.size || sha256(bytes) != blob.digest) {
+    const auto hashed = bytes.size() == blob.size ? HashedBlob::of(blob.digest, bytes) : std::nullopt;
+    if (!hashed) {
         counters_.add(instance->name, one(&Counts::mismatches));
         return refuse(name, caller, Refusal::bad_request, "the bytes do not match the digest");
     }
@@ -178,7 +179,7 @@ Answer<Written> Service::put_blob(const Caller& caller, std::string_view name, c
     if (!present.ok()) return failure(*instance, caller, present.error());
     const bool there = present->has_value();
     if (!there) {
-        const Status kept = store_.put(Keyspace::blob, blob.digest, bytes);
+        const Status kept = store_.put(*hashed);
         if (!kept.ok()) return failure(*instance, caller, kept.error());
     }
     Counts counts = one(there ? &Counts::blobs_already_there : &Counts::blobs_written);

@@ -7,6 +7,7 @@ import http.client
 import pathlib
 import shutil
 import signal
+import socket
 import ssl
 import subprocess
 import tempfile
@@ -75,6 +76,70 @@ def handshakes(binary):
         equal(server.get(BLOB, "/main", token=SECRET).body, BLOB, "another client afterwards")
 
 
+def slow(binary):
+    """Slow at the head, the body, reading, or doing nothing, and gone without a word: all over TLS; others are served."""
+    short = {f"timeouts_{what}": "500ms" for what in ("head", "body", "write", "idle")}
+    large = b"L" * (32 << 20)
+    auth = f"Host: h\r\nAuthorization: Bearer {SECRET}\r\n"
+    with Certificates() as made, served(binary, made.make("a"), **short) as server:
+        equal(server.put(BLOB, "/main", token=SECRET), 201, "positive control")
+        equal(server.put(large, "/main", token=SECRET), 201, "positive control: 32 MiB")
+        context = ssl.create_default_context(cafile=made.path / "a.pem")
+
+        def connect(say=b"", buffer=None):
+            s = socket.socket()
+            s.settimeout(20)
+            if buffer:
+                s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, buffer)
+            s.connect(("127.0.0.1", server.port))
+            s = context.wrap_socket(s, server_hostname="127.0.0.1")
+            s.sendall(say)
+            return s
+
+        def rest(s):
+            """What still comes until the server ends the connection."""
+            got = 0
+            try:
+                while part := s.recv(1 << 20):
+                    got += len(part)
+            except (ssl.SSLError, ConnectionError):  # closed without TLS's farewell
+                pass
+            s.close()
+            return got
+
+        ask = f"GET /main/cas/{key(large)} HTTP/1.1\r\n{auth}\r\n".encode()
+        held = {"head": connect(b"GET /main/cas/"), "idle": connect(),
+                "body": connect(f"PUT /main/cas/{key(b'x' * 9)} HTTP/1.1\r\n{auth}Content-Length: 9\r\n\r\nxxx".encode()),
+                "reader": connect(ask, 4096)}
+        for _ in range(20):  # gone in the middle of a response
+            connect(ask).close()
+        equal(server.get(BLOB, "/main", token=SECRET).body, BLOB, "another client meanwhile")
+        for what in ("head", "idle", "body"):
+            equal(rest(held[what]), 0, what)
+        timeouts = lambda: [float(line.split()[-1]) for line in server.call("GET", "/metrics", token=SECRET).body.decode().splitlines()
+                            if "timeout" in line and line[0] != "#"][0]
+        for _ in range(200):  # the reader reads nothing until the server has given up
+            if timeouts() >= 3:
+                break
+            signal.sigtimedwait([], 0.05)
+        got = rest(held["reader"])
+        check(got < len(large), f"a client that did not read got all {got} bytes")
+        equal(server.get(large, "/main", token=SECRET).body, large, "a client that does read")
+        # Requests in a row, and a body of many records.
+        s = connect(2 * f"GET /main/cas/{key(BLOB)} HTTP/1.1\r\n{auth}\r\n".encode())
+        got = b""
+        while got.count(b"HTTP/1.1 200") < 2 or len(got) < 2 * len(BLOB):
+            got += s.recv(1 << 20)
+        check(got.count(BLOB) == 2, "two requests in a row")
+        body = bytes(range(256)) * 8
+        s.sendall(f"PUT /main/cas/{key(body)} HTTP/1.1\r\n{auth}Content-Length: {len(body)}\r\n\r\n".encode())
+        for at in range(0, len(body), 16):
+            s.sendall(body[at:at + 16])
+        check(b" 201 " in s.recv(65536), "a body in small records")
+        s.close()
+        equal(server.get(body, "/main", token=SECRET).body, body, "a body in small records")
+
+
 def changed(binary):
     """SIGHUP takes a new certificate; one that is broken keeps the old; a key that is not the certificate's starts no server."""
     with Certificates() as made:
@@ -113,4 +178,4 @@ def changed(binary):
 if __name__ == "__main__":
     if shutil.which("openssl") is None:
         skip("openssl is not installed")
-    main([versions, handshakes, changed])
+    main([versions, handshakes, slow, changed])

@@ -14,6 +14,7 @@ import pathlib
 import re
 import shutil
 import socket
+import ssl
 import statistics
 import subprocess
 import sys
@@ -118,25 +119,32 @@ def ratios(what, one, two, rounds):
           flush=True)
 
 
-def memory(binary):
+def memory(binary, tls):
     """Resident bytes with 1,000 connections that have each read a blob and stay."""
-    with Cached(binary, log="off", limits_connections=2000) as server:
-        blob = b"m" * 20_480
-        server.put(blob)
-        before = server.memory()
-        held = []
-        for _ in range(1000):
-            s = server.connect()
-            s.sendall(f"GET /cas/{key(blob)} HTTP/1.1\r\nHost: h\r\n\r\n".encode())
-            held.append(s)
-        for s in held:
-            got = 0
-            while got < len(blob):
-                got += len(s.recv(65536))
-        now = server.memory()
-        for s in held:
-            s.close()
-    print(f"memory: {before / 2**20:.1f} MiB idle, {now / 2**20:.1f} MiB with 1,000 connections (asked: at most 64)")
+    with tempfile.TemporaryDirectory() as folder:
+        pair = [os.path.join(folder, name) for name in ("cert.pem", "key.pem")]
+        subprocess.run(["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-days", "2", "-subj", "/CN=localhost",
+                        "-addext", "subjectAltName=IP:127.0.0.1", "-out", pair[0], "-keyout", pair[1]], check=True, stderr=subprocess.DEVNULL)
+        with Cached(binary, log="off", limits_connections=2000, **(dict(zip(("tls_certificate", "tls_key"), pair)) if tls else {})) as server:
+            context = ssl.create_default_context(cafile=pair[0])
+            blob = b"m" * 20_480
+            server.put(blob)
+            before = server.memory()
+            held = []
+            for _ in range(1000):
+                s = server.connect()
+                if tls:
+                    s = context.wrap_socket(s, server_hostname="127.0.0.1")
+                s.sendall(f"GET /cas/{key(blob)} HTTP/1.1\r\nHost: h\r\n\r\n".encode())
+                held.append(s)
+            for s in held:
+                got = 0
+                while got < len(blob):
+                    got += len(s.recv(65536))
+            now = server.memory()
+            for s in held:
+                s.close()
+    print(f"memory: {before / 2**20:.1f} MiB idle, {now / 2**20:.1f} MiB with 1,000 {'TLS ' * tls}connections (asked: at most 64)", flush=True)
 
 
 def main():
@@ -172,7 +180,8 @@ def main():
                 ratios("  the same, no pool", lambda: put(alone), lambda: put(nginx), options.rounds)
                 if size == SIZES[1]:
                     ratios("  the same, --sync file", lambda: put(flushed), lambda: put(nginx), 1)
-    memory(binary)
+    memory(binary, False)
+    memory(binary, True)
 
 
 if __name__ == "__main__":
