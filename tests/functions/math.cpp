@@ -15,6 +15,8 @@ TEST(Functions, Math) {
     math.test(
             "pi * x", [](auto x) { return decltype(x)(pi) * x; }, number("x", linear(-4, 4)))
         .named("pi");
+    math.test(
+        "cos_sin_of_turn(turn)", [](auto turn) { return cos_sin_of_turn(turn); }, number("turn", linear(0, 1)));
     math.run();
 }
 

@@ -12,8 +12,6 @@ TEST(Functions, Pcf) {
     pcf.test(
         "turned(point, cos_sin)", [](auto point, auto cos_sin) { return turned(point, cos_sin); },
         vector2("point", linear(-1, 1)), vector2("cos_sin", linear(-1, 1)));
-    pcf.test(
-        "cos_sin_of_turn(turn)", [](auto turn) { return cos_sin_of_turn(turn); }, number("turn", linear(0, 1)));
     // Integers and a division by a power of two: exact.
     pcf.test(
            "pixel_hash(uvec2(x, y)) + zero",

@@ -52,7 +52,7 @@ vec4 cone_of_six(int i, vec3 n) {
     if (i == 0) return vec4(n, 0.25);
     vec3 t, b;
     gi_basis(n, t, b);
-    const float phi = 2.0 * pi / 5.0 * float(i);
+    const float phi = 2.0 * pi / 5.0 * float(i > 2 ? i - 5 : i);    // within [-pi, pi]
     return vec4(0.8660254 * (t * cos(phi) + b * sin(phi)) + 0.5 * n, 0.15);
 }
 

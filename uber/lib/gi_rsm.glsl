@@ -35,9 +35,8 @@ vec3 rsm_direction(ivec2 texel, vec3 axis) {
     vec3 t, b;
     gi_basis(axis, t, b);
     const float z = (float(texel.y) + 0.5) / float(RSM_SIZE);
-    const float phi = 2.0 * pi * (float(texel.x) + 0.5) / float(RSM_SIZE);
-    const float r = sqrt((1.0 - z) * (1.0 + z));
-    return t * (r * cos(phi)) + b * (r * sin(phi)) + axis * z;
+    const vec2 p = -sqrt((1.0 - z) * (1.0 + z)) * cos_sin_of_turn((float(texel.x) + 0.5) / float(RSM_SIZE));
+    return t * p.x + b * p.y + axis * z;
 }
 
 // All texels of maps of RSM_SIZE^2: 64, 256, 1024 lamps for 8, 16, 32. Texels with a zero normal see nothing.
@@ -58,9 +57,7 @@ vec3 rsm_gather_all(sampler2D positions, sampler2D normals, sampler2D intensitie
 // 1 / (2 pi reach^2 u1), texels with size^2: the weight is 2 pi reach^2 size^2 u1. (The paper weighs by u1^2, which dims
 // what is near.) u: [0, 1)^2; reach: uv; size: texels a side.
 vec3 rsm_tap(vec2 u, float reach, float size) {
-    const float phi = 2.0 * pi * u.y;
-    const float r = reach * u.x;
-    return vec3(r * cos(phi), r * sin(phi), 2.0 * pi * reach * reach * u.x * size * size);
+    return vec3(-reach * u.x * cos_sin_of_turn(u.y), 2.0 * pi * reach * reach * u.x * size * size);
 }
 
 // RSM_TAPS texels about uv, where the receiver stands in the map, weighted so that the mean estimates the sum over all

@@ -30,9 +30,8 @@ void gi_basis(vec3 n, out vec3 t, out vec3 b) {
 vec3 gi_cosine_direction(vec2 u, vec3 n) {
     vec3 t, b;
     gi_basis(n, t, b);
-    const float r = sqrt(u.x);
-    const float phi = 2.0 * pi * u.y;
-    return t * (r * cos(phi)) + b * (r * sin(phi)) + n * sqrt(max(1.0 - u.x, 0.0));
+    const vec2 p = -sqrt(u.x) * cos_sin_of_turn(u.y);
+    return t * p.x + b * p.y + n * sqrt(max(1.0 - u.x, 0.0));
 }
 
 // Point i of n of Hammersley's set, turned by shift (Cranley and Patterson). i: [0, n); shift: [0, 1)^2.

@@ -37,8 +37,7 @@ mat3 frame_around(vec3 n) {
 // A direction around +z with density cos / pi. u: [0, 1)^2.
 vec3 sample_cosine(vec2 u) {
     const float r = sqrt(u.x);
-    const float phi = 2.0 * pi * u.y;
-    return vec3(r * cos(phi), r * sin(phi), sqrt(max(1.0 - u.x, 0.0)));
+    return vec3(-r * cos_sin_of_turn(u.y), sqrt(max(1.0 - u.x, 0.0)));
 }
 
 // A half vector around +z with density D n.h:  tan^2 theta = a^2 u / (1 - u)  (Walter et al. 2007, equation 35). From the
@@ -47,8 +46,7 @@ vec3 sample_ggx_half(vec2 u, float alpha) {
     const float tangent = alpha * sqrt(u.x / max(1.0 - u.x, 1e-7));
     const float cosine = inversesqrt(1.0 + tangent * tangent);
     const float sine = tangent * cosine;
-    const float phi = 2.0 * pi * u.y;
-    return vec3(sine * cos(phi), sine * sin(phi), cosine);
+    return vec3(-sine * cos_sin_of_turn(u.y), cosine);
 }
 
 // The mip whose texels are as large as a sample's share of the sphere: 0.5 log2(ws / wp), ws = 1 / (count pdf) and

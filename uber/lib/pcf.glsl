@@ -64,12 +64,6 @@ vec2 turned(vec2 point, vec2 cos_sin) {
     return vec2(point.x * cos_sin.x - point.y * cos_sin.y, point.x * cos_sin.y + point.y * cos_sin.x);
 }
 
-// Cosine and sine of turn whole turns less a half: Vulkan bounds their errors on [-pi, pi] only. turn: [0, 1].
-vec2 cos_sin_of_turn(float turn) {
-    const float angle = 2.0 * pi * (turn - 0.5);
-    return vec2(cos(angle), sin(angle));
-}
-
 // radius: uv, >= 0. turn: [0, 1), any hash of the pixel, such as pixel_hash below.
 float pcf_poisson_16(sampler2DShadow map, vec3 place, vec2 slope, float bias, vec2 radius, float turn) {
     const vec2 cos_sin = cos_sin_of_turn(turn);

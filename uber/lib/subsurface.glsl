@@ -85,8 +85,7 @@ float burley_radius(float u, float s) {
 // i: [0, n); rotation: radians, any.
 vec3 burley_tap(int i, int n, float s, float rotation) {
     const float r = burley_radius((float(i) + 0.5) / float(n), s);
-    const float phi = 2.399963230 * float(i) + rotation;
-    return vec3(r * cos(phi), r * sin(phi), r);
+    return vec3(-r * cos_sin_of_turn(fract(0.381966011 * float(i) + rotation / (2.0 * pi))), r);
 }
 
 // What a tap drawn with s_drawn counts in channels with s: R(r; s) / R(r; s_drawn). No 1/r is left in it. At most
@@ -115,8 +114,7 @@ vec3 burley_through_tap(int i, int n, float s, float thickness, float rotation) 
     const float rest = 1.0 - (float(i) + 0.5) / float(n);
     const float rho = max(burley_radius(1.0 - beyond * rest, s), thickness);
     const float r = sqrt((rho - thickness) * (rho + thickness));
-    const float phi = 2.399963230 * float(i) + rotation;
-    return vec3(r * cos(phi), r * sin(phi), rho);
+    return vec3(-r * cos_sin_of_turn(fract(0.381966011 * float(i) + rotation / (2.0 * pi))), rho);
 }
 
 // Irradiance around uv, spread by Burley's profile of a flat surface, BURLEY_TAPS taps, over the weights' sum.

@@ -47,7 +47,7 @@ Vec4<T> cone_of_six(int i, const Vec3<T>& n) {
     if (i == 0) return {n.x, n.y, n.z, T(0.25)};
     Vec3<T> t, b;
     gi_basis(n, t, b);
-    const T phi = T(2 * pi * i / 5);
+    const T phi = T(2 * pi * (i > 2 ? i - 5 : i) / 5);
     const Vec3<T> d = (t * cos(phi) + b * sin(phi)) * T(std::sqrt(0.75)) + n * T(0.5);
     return {d.x, d.y, d.z, T(0.15)};
 }

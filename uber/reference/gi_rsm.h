@@ -29,8 +29,9 @@ template <class T>
 Vec3<T> rsm_direction(int i, int j, int size, const Vec3<T>& axis) {
     Vec3<T> t, b;
     gi_basis(axis, t, b);
-    const T z = (T(j) + T(0.5)) / T(size), phi = T(2 * pi) * (T(i) + T(0.5)) / T(size), r = sqrt(T(1) - z * z);
-    return t * (r * cos(phi)) + b * (r * sin(phi)) + axis * z;
+    const T z = (T(j) + T(0.5)) / T(size);
+    const Vec2<T> p = cos_sin_of_turn((T(i) + T(0.5)) / T(size)) * -sqrt(T(1) - z * z);
+    return t * p.x + b * p.y + axis * z;
 }
 
 template <class T, class P, class N, class I>
@@ -46,8 +47,9 @@ Vec3<T> rsm_gather_all(P positions, N normals, I intensities, const Vec3<T>& x, 
 
 template <class T>
 Vec3<T> rsm_tap(const Vec2<T>& u, const T& reach, const T& size) {
-    const T phi = T(2 * pi) * u.y, r = reach * u.x;
-    return {r * cos(phi), r * sin(phi), T(2 * pi) * r * reach * size * size};
+    const T r = reach * u.x;
+    const Vec2<T> p = cos_sin_of_turn(u.y) * -r;
+    return {p.x, p.y, T(2 * pi) * r * reach * size * size};
 }
 
 }  // namespace kiln::reference

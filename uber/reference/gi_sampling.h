@@ -28,8 +28,8 @@ template <class T>
 Vec3<T> gi_cosine_direction(const Vec2<T>& u, const Vec3<T>& n) {
     Vec3<T> t, b;
     gi_basis(n, t, b);
-    const T r = sqrt(u.x), phi = T(2 * pi) * u.y;
-    return t * (r * cos(phi)) + b * (r * sin(phi)) + n * sqrt(max(T(1) - u.x, T(0)));
+    const Vec2<T> p = cos_sin_of_turn(u.y) * -sqrt(u.x);
+    return t * p.x + b * p.y + n * sqrt(max(T(1) - u.x, T(0)));
 }
 
 template <class T>

@@ -26,16 +26,17 @@ Mat3<T> frame_around(const Vec3<T>& n) {
 
 template <class T>
 Vec3<T> sample_cosine(const Vec2<T>& u) {
-    const T r = sqrt(u.x), phi = T(2.0 * pi) * u.y;
-    return {r * cos(phi), r * sin(phi), sqrt(max(T(1) - u.x, T(0)))};
+    const Vec2<T> p = cos_sin_of_turn(u.y) * -sqrt(u.x);
+    return {p.x, p.y, sqrt(max(T(1) - u.x, T(0)))};
 }
 
 // Walter et al. 2007, equation 35: theta = atan(alpha sqrt(u / (1 - u))).
 template <class T>
 Vec3<T> sample_ggx_half(const Vec2<T>& u, const T& alpha) {
-    const T tangent = alpha * sqrt(u.x / max(T(1) - u.x, T(1e-7))), phi = T(2.0 * pi) * u.y;
+    const T tangent = alpha * sqrt(u.x / max(T(1) - u.x, T(1e-7)));
     const T cosine = inversesqrt(T(1) + tangent * tangent), sine = tangent * cosine;
-    return {sine * cos(phi), sine * sin(phi), cosine};
+    const Vec2<T> p = cos_sin_of_turn(u.y) * -sine;
+    return {p.x, p.y, cosine};
 }
 
 // 0.5 log2 of the sample's solid angle over the texel's.

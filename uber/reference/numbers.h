@@ -235,4 +235,11 @@ Vec4<T> operator*(const Mat4<T>& m, const Vec4<T>& v) {
     return m.columns[0] * v.x + m.columns[1] * v.y + m.columns[2] * v.z + m.columns[3] * v.w;
 }
 
+// Cosine and sine of turn whole turns less a half.
+template <class T>
+Vec2<T> cos_sin_of_turn(const T& turn) {
+    const T angle = T(2 * pi) * (turn - T(0.5));
+    return {cos(angle), sin(angle)};
+}
+
 }  // namespace kiln::reference

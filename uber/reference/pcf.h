@@ -45,12 +45,6 @@ Vec2<T> turned(const Vec2<T>& point, const Vec2<T>& cos_sin) {
     return {point.x * cos_sin.x - point.y * cos_sin.y, point.x * cos_sin.y + point.y * cos_sin.x};
 }
 
-template <class T>
-Vec2<T> cos_sin_of_turn(const T& turn) {
-    const T angle = T(2 * pi) * (turn - T(0.5));
-    return {cos(angle), sin(angle)};
-}
-
 template <class T, class Compare, int n>
 T pcf_poisson(const Compare& map, const Vec3<T>& place, const Vec2<T>& slope, const T& bias, const Vec2<T>& radius, const T& turn,
               const Vec2<double> (&disk)[n]) {

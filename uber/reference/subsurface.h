@@ -79,8 +79,8 @@ T burley_radius(const T& u, const T& s) {
 template <class T>
 Vec3<T> burley_tap(int i, int n, const T& s, const T& rotation) {
     const T r = burley_radius((T(i) + T(0.5)) / T(n), s);
-    const T phi = T(pi * (3 - std::sqrt(5.0))) * T(i) + rotation;
-    return {r * cos(phi), r * sin(phi), r};
+    const Vec2<T> p = cos_sin_of_turn(fract(T((3 - std::sqrt(5.0)) / 2) * T(i) + rotation / T(2 * pi))) * -r;
+    return {p.x, p.y, r};
 }
 
 template <class T>
@@ -98,8 +98,8 @@ Vec3<T> burley_through_tap(int i, int n, const T& s, const T& thickness, const T
     const T rest = T(1) - (T(i) + T(0.5)) / T(n);
     const T rho = max(burley_radius(T(1) - burley_transmittance(thickness, s) * rest, s), thickness);
     const T r = sqrt((rho - thickness) * (rho + thickness));
-    const T phi = T(pi * (3 - std::sqrt(5.0))) * T(i) + rotation;
-    return {r * cos(phi), r * sin(phi), rho};
+    const Vec2<T> p = cos_sin_of_turn(fract(T((3 - std::sqrt(5.0)) / 2) * T(i) + rotation / T(2 * pi))) * -r;
+    return {p.x, p.y, rho};
 }
 
 // irradiance: (uv) -> Vec3.
