@@ -19,8 +19,9 @@ layout(location = 0) out float light_distance;    // from the light's plane: met
 void main() {
     vec4 clip = shadow_view_projection * (model * vec4(position, 1.0));
 #if LIGHT_TYPE == LIGHT_DIRECTIONAL
-    // A caster between the sun and the near plane still casts: it is flattened onto the plane rather than clipped, as
-    // depth clamping would do where a device has it.
+    // A caster between the sun and the near plane still casts: its vertices are moved onto the plane rather than clipped. A triangle
+    // that crosses the plane is bent by that and stored too deep (.75 for .5 where one goes from z -1 to 1), so the near plane belongs
+    // before all that is seen; depthClampEnable in place of this line is exact.
     clip.z = max(clip.z, 0.0);
 #endif
     gl_Position = clip;
