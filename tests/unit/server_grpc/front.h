@@ -43,6 +43,8 @@ protected:
         "pull pppppppppppppppppppp pr/*:read,cas-write,ac-write\n";
 
     void start(const GrpcOptions& options = {}, const char* access = nullptr, ServiceLimits limits = {}) {
+        server_.reset();  // each before what it uses
+        service_.reset();
         DiskOptions disk;
         disk.sync = Sync::none;
         auto opened = DiskStore::open(folder_.path(), disk);

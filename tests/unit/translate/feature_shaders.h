@@ -950,9 +950,9 @@ gl_Position=p; memoryBarrier(); gl_Position.x=1.0;
 })"},
     {Stage::vertex, "vxfb",
      R"(layout(location=0) in vec4 p; layout(xfb_buffer=0,xfb_offset=0,xfb_stride=16,location=0) out vec4 q;
-out gl_PerVertex{layout(xfb_buffer=1,xfb_offset=0,xfb_stride=16) vec4 gl_Position;};
+layout(xfb_buffer=1,xfb_offset=0,xfb_stride=16,location=1) out vec4 r;
 void main(){
-gl_Position=p; q=p;
+gl_Position=p; q=p; r=p;
 })"},
 };
 
