@@ -111,7 +111,7 @@ std::vector<Digits> covering(Space& space, bool pairs, const Wanted& wanted) {
     std::set<std::pair<Value, Value>> missing;
     for (const Value& x : values)
         for (const Value& y : values)
-            if (pairs ? x.axis < y.axis : x == y) missing.insert({x, y});
+            if (x == y || (pairs && x.axis < y.axis)) missing.insert({x, y});
     std::vector<Digits> out;
     while (!missing.empty()) {
         Set s = d.both(d.both(all, d.where(missing.begin()->first.axis, missing.begin()->first.digit)),
@@ -415,10 +415,10 @@ std::vector<Kind> kinds_of(const Pipeline& p) {
 
 std::string count_of(const Pipeline& p) { return "output " + std::to_string(p.count); }
 
-void expect_finite_pixels(const std::string& manifest, const std::vector<Extremes>& all) {
+void expect_finite_pixels(const std::string& manifest, const std::set<std::string>& shaders, const std::vector<Extremes>& all) {
     std::set<std::string> used;
     uint64_t pixels = 0;
-    const std::vector<Pipeline> pipes = pipelines(manifest, {"surface", "surface_local"}, true, false);
+    const std::vector<Pipeline> pipes = pipelines(manifest, shaders, true, false);
     for (const Pipeline& p : pipes)
         for (const Kind& kind : kinds_of(p)) {
             const std::vector<Seen> seen = draw(kind.stages, all, kind.fed, count_of(p), used);
@@ -442,9 +442,31 @@ void expect_finite_pixels(const std::string& manifest, const std::vector<Extreme
         for (const auto& [member, numbers] : e.members) EXPECT_TRUE(used.count(member)) << "no variant has " << member;
 }
 
-TEST(Variants, FiniteForAnyInput) { expect_finite_pixels("surface.yaml", extremes()); }
+TEST(Variants, FiniteForAnyInput) { expect_finite_pixels("surface.yaml", {"surface"}, extremes()); }
 
-TEST(Variants, FiniteForAnyInputOfTheRenderer) { expect_finite_pixels("renderer.yaml", renderer_extremes()); }
+TEST(Variants, FiniteForAnyInputOfTheRenderer) {
+    expect_finite_pixels("renderer.yaml", {"surface", "surface_local"}, renderer_extremes());
+}
+
+// What the deferred passes, the sky and the tone curves read: matrices without a place, g-buffers of nothing and of ones.
+TEST(Variants, FiniteForAnyInputOfFullScreenPasses) {
+    std::vector<Extremes> all{{"usual", {}, {}, false}};
+    const auto add = [&](const std::string& name, std::map<std::string, Numbers> members, std::optional<float> textures = {}) {
+        all.push_back({name, std::move(members), textures, false});
+    };
+    for (const float t : {0.0f, 0.5f, 1.0f, 65504.0f}) add("maps of " + std::to_string(t), {}, t);
+    for (const double ev : {-20.0, 0.0, 30.0})
+        for (const float t : {0.0f, 65504.0f}) add("EV " + std::to_string(ev), {{"exposure_value", {ev}}, {"white", {ev}}}, t);
+    add("no screen matrix", {{"world_of_clip", {0}}});
+    // 1e20 times as far: squares of distances, as of a light far away.
+    add("at infinity", {{"world_of_clip", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0}}});
+    all.back().infinite_squares = true;
+    add("bright sky", {{"sky_intensity", {1e20}}, {"sky_level", {20}}, {"sky_sh", {1e20}}});
+    add("bright light", {{"light_intensity", {reference::largest_intensity}}}, 1.0f);
+    add("light at the surface", {{"light_position", {0, 0, 0}}, {"light_direction", {0, 0, 0}}}, 0.5f);
+    add("viewer at the surface", {{"camera_position", {0, 0, 0}}, {"world_of_clip", {0}}});
+    expect_finite_pixels("renderer.yaml", {"deferred", "background", "post"}, all);
+}
 
 // The lecture's materials in whole variants: light that is negative, or not a number, or was one on the way into a clamp.
 TEST(Variants, LecturesMaterialsFail) {

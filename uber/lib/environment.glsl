@@ -87,10 +87,12 @@ vec3 equirect_direction(vec2 uv) {
 
 // Reads such a picture at an explicit level: across the seam u jumps from 1 to 0, which derivatives would take for a whole
 // picture and answer with the smallest mip. The sampler repeats in u. v stays half a row of the coarser level that is read
-// away from its ends, so that a pole is never mixed with the opposite one, whatever the sampler does in v. d: not 0.
+// away from its ends, so that a pole is never mixed with the opposite one, whatever the sampler does in v. d: not 0. lod: levels that
+// the picture has; past them the size of a level that is asked for is undefined, so rows are counted from the first.
 vec3 sample_equirect(sampler2D picture, vec3 d, float lod) {
     const vec2 uv = equirect_uv(d);
-    const float half_row = 0.5 / float(textureSize(picture, int(ceil(max(lod, 0.0)))).y);
+    const int rows = textureSize(picture, 0).y >> int(ceil(clamp(lod, 0.0, 30.0)));
+    const float half_row = 0.5 / float(max(rows, 1));
     return textureLod(picture, vec2(uv.x, clamp(uv.y, half_row, 1.0 - half_row)), lod).rgb;
 }
 
