@@ -1,6 +1,6 @@
 #version 450
-// What a surface reflects of one light, by every form that lib/ has: a sphere under a small light nearby. The first value of every
-// axis is the form that surface takes; LECTURE is as printed in GAMES104 lecture 05. manifests/library.yaml says what goes together.
+// What a surface reflects of one light, by the forms that lib/ has: a sphere under a small light nearby. The first value of every
+// axis is a right form; LECTURE is as printed in GAMES104 lecture 05. manifests/library.yaml says what goes together.
 
 // How parameters become reflectances and alpha: limited to [0, 1], let through as far as results stay finite, or as printed.
 #define PARAMETERS_LIMITED 0

@@ -1,5 +1,5 @@
 #version 450
-// Image-based light on a sphere, by every form that lib/ has. The first value of every axis is the form that surface takes; LECTURE is
+// Image-based light on a sphere, by the forms that lib/ has. The first value of every axis is the form that surface takes; LECTURE is
 // as printed in GAMES104 lecture 05. manifests/library.yaml says what goes together.
 
 #define REFLECTION_PREFILTERED 0

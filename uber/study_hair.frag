@@ -1,5 +1,5 @@
 #version 450
-// What a hair fibre scatters towards the eye, over the directions that light may come from (study_directions.glsl): every form of lib/.
+// What a hair fibre scatters towards the eye, over the directions that light may come from (study_directions.glsl): the forms of lib/.
 // The fibre lies along x. manifests/library.yaml names the values.
 
 #define HAIR_CHIANG 0

@@ -1,5 +1,5 @@
 #version 450
-// Light that has met a surface before, on a white square, by every form of lib/. The square is the floor y = -1/2 of a room of 1 m about
+// Light that has met a surface before, on a white square, by the forms of lib/ but path tracing. The square is the floor y = -1/2 of a room of 1 m about
 // 0, seen from above, which fills the volumes; for screen it faces a camera at the origin from 1.5 m. manifests/library.yaml names the
 // values.
 

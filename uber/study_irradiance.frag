@@ -1,5 +1,5 @@
 #version 450
-// Diffuse light from a few numbers a place: every form of spherical harmonics in lib/, an irradiance map, and every way to go between
+// Diffuse light from a few numbers a place: the forms of spherical harmonics in lib/, an irradiance map, and every way to go between
 // probes. A white sphere of radius 1 shows E / pi. The first value of every axis is the form that surface takes; LECTURE is as
 // printed in GAMES104 lecture 05. manifests/library.yaml says what goes together.
 

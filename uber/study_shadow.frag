@@ -1,5 +1,5 @@
 #version 450
-// The shadow of one map on a receiver, by every filter that lib/ has: across the picture the place in the map, down the picture the
+// The shadow of one map on a receiver, by the filters that lib/ has: across the picture the place in the map, down the picture the
 // receiver's distance from the lamp, so that a penumbra widens downwards. LECTURE is as printed in GAMES104 lecture 05.
 
 #define FILTER_HARD 0

@@ -1,5 +1,5 @@
 #version 450
-// Light that leaves a surface elsewhere than it entered, by every form of lib/: on a lit sphere (wrap, preintegrated), as a blur of
+// Light that leaves a surface elsewhere than it entered, by the forms of lib/ for closed surfaces: on a lit sphere (wrap, preintegrated), as a blur of
 // irradiance over a surface (gather, separable), and as the profile itself about a point (profile). manifests/library.yaml names the
 // values.
 

@@ -87,6 +87,8 @@ layout(location = 1) out vec4 gbuffer_specular;    // rgb: F0 or ks; a: perceptu
 // bytes a pixel could be saved by differences of depth; but those are of one side's plane and another's at every edge between two
 // objects, are facets where normals are smooth, and have the depth's quantum over a pixel's width as their noise.
 layout(location = 2) out vec4 gbuffer_normal;
+// The fifth target is more than Vulkan and ES 3.0 promise (maxColorAttachments and GL_MAX_DRAW_BUFFERS are 4 at least); drivers of
+// GPUs that draw deferred have 8.
 // Indirect light and not what is reflected of it: how much the coat leaves for the base is known once the environment is.
 layout(location = 3) out vec4 gbuffer_irradiance;    // rgb: indirect irradiance / pi, W/(m2 sr); a: 1 baked, 0 not
 layout(location = 4) out vec4 gbuffer_radiance;      // rgb: emission, to which the deferred passes add; a: 1

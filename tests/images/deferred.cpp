@@ -19,7 +19,7 @@ bool directional(const Values& values) {
 // The part of a picture that may be left out: as in surface.cpp, most where filters make many decisions.
 double most_masked(const reference::SurfaceAxes& axes) {
     using reference::SurfaceShadow;
-    // Depth's quantum moves places, and these look at 64 texels.
+    // Depth's quantum moves places, and these read 32 of a table.
     if (axes.shadow == SurfaceShadow::vssm) return 0.7;
     return axes.shadow > SurfaceShadow::hard || axes.cascades > 1 || axes.reflection != reference::SurfaceReflection::none ? 0.2
                                                                                                                            : 0.15;

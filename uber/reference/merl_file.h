@@ -55,7 +55,7 @@ inline MerlFile parse_merl(const std::string& name, const std::vector<unsigned c
         const uint64_t word = integer(12 + 8 * i, 8);
         double x = 0;
         std::memcpy(&x, &word, sizeof x);
-        if (!(x >= 0 && std::isfinite(x))) {
+        if (!(x >= 0 && x <= 1e38)) {
             x = 0;
             ++unusable;
             file.measured[i % size_t{merl_plane}] = false;
@@ -64,7 +64,7 @@ inline MerlFile parse_merl(const std::string& name, const std::vector<unsigned c
     }
     if (unusable)
         file.warning = name + ": " + std::to_string(unusable) + " of " + std::to_string(file.values.size()) +
-                       " values are negative or not finite and count as 0";
+                       " values are negative, above 1e38 or not numbers and count as 0";
     return file;
 }
 

@@ -202,12 +202,12 @@ Point point_at(vec2 u) {
         };
         f.scenes.push_back(std::move(s));
     }
-    // The ground of the hills' sun rises 2.14 texels of depth a texel; steeper places have more of the bias.
+    // The ground of the hills' sun rises 2.16 texels of depth a texel; steeper places have more of the bias.
     const std::string terrain_shade =
         constant("sun", -terrain->light()) +
         "vec3 shade(Point p) {\n    const float cosine = dot(p.normal, sun);\n    if (cosine <= 0.0) return vec3(0.0);\n"
         "    const float slope = sqrt(max(1.0 - cosine * cosine, 0.0)) / max(cosine, 1e-3);\n"
-        "    return light(p.position, p.depth, clamp(slope / 2.14, 1.0, 8.0)) * cosine;\n}\n";
+        "    return light(p.position, p.depth, clamp(slope / 2.16, 1.0, 8.0)) * cosine;\n}\n";
     const std::string edges_shade = R"(
 vec3 shade(Point p) {
     float wrong = 0.0;

@@ -14,7 +14,7 @@ constexpr int edge_samples = 64;
 
 }  // namespace
 
-// Rings of three hills, each as wide as it is far away, so that there are shadows at every distance.
+// Rings of three hills, each 0.14 to 0.32 of its distance wide, so that there are shadows at every distance.
 Terrain::Terrain() : light_(normalize(Vec3d{0.8, -0.42, 0.43})), axes_(reference::light_axes(light_)) {
     Random random(104);
     for (double distance = 4.0; distance < 1000.0; distance *= 1.26)

@@ -135,11 +135,12 @@ TEST(MerlFile, IsReadAndUnmeasuredValuesAreNamed) {
     put(5, -1.0);
     put(6, std::numeric_limits<double>::quiet_NaN());
     put(7, std::numeric_limits<double>::infinity());
+    put(9, 1e300);  // which no float holds
     put(8, 3.5);
     const MerlFile mended = parse_merl("gold.binary", bytes);
     EXPECT_EQ(mended.error, "");
-    EXPECT_EQ(mended.warning, "gold.binary: 3 of 4374000 values are negative or not finite and count as 0");
-    EXPECT_EQ(mended.values[5] + mended.values[6] + mended.values[7], 0.0);
+    EXPECT_EQ(mended.warning, "gold.binary: 4 of 4374000 values are negative, above 1e38 or not numbers and count as 0");
+    EXPECT_EQ(mended.values[5] + mended.values[6] + mended.values[7] + mended.values[9], 0.0);
     EXPECT_EQ(mended.values[8], 3.5);
     bytes.pop_back();
     EXPECT_EQ(parse_merl("gold.binary", bytes).error, "gold.binary: 34992011 bytes; a MERL file has 34992012");
