@@ -189,7 +189,6 @@ Compiled compile_here(Stage stage, std::string_view text, const Options& options
     shader.setEnvClient(glslang::EShClientVulkan, client_of(options.vulkan));
     shader.setEnvTarget(glslang::EShTargetSpv,
                         static_cast<glslang::EShTargetLanguageVersion>((options.spirv >> 8) << 16 | (options.spirv & 0xff) << 8));
-    if (debug) shader.setDebugInfo(true);
     const EShMessages rules = debug ? static_cast<EShMessages>(vulkan_rules | EShMsgDebugInfo) : vulkan_rules;
     const bool parsed = shader.parse(GetDefaultResources(), 110, false, rules);
     out.messages = read_messages(shader.getInfoLog());

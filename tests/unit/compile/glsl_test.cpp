@@ -105,6 +105,14 @@ TEST(Glsl, DebugKeepsLinesAndMessagesCountTheText) {
     EXPECT_NE(std::string::npos, text->find("90"));
     EXPECT_NE(std::string::npos, text->find("kept_name"));
 
+    // A block in a function is a scope to a debugger, of which glslang 12 makes what it cannot write.
+    const Compiled scopes = glsl_compile(
+        Stage::fragment,
+        head + "layout(location = 0) out vec4 o;\nvoid main() { for (int i = 0; i < 2; ++i) { vec4 m = vec4(i); { o = m; } } }\n",
+        options);
+    ASSERT_FALSE(scopes.words.empty());
+    EXPECT_TRUE(spirv_validate(scopes.words, options).empty());
+
     const Compiled bad =
         glsl_compile(Stage::vertex, head + "#line 40 \"lib/a.glsl\"\nvoid main()\n{\n#line 90\nx = 1;\n}\n", options);
     ASSERT_EQ(1u, bad.messages.size());
