@@ -73,19 +73,6 @@ Digest classes_key(const Build& build, const Shader& shader, const StageFile& st
     return hasher.finish();
 }
 
-// The classes must partition the needed set exactly; anything else is our own mistake and must not reach a table.
-void check_partition(Build& build, Space& space, const Shader& shader, Stage stage, const Split& split) {
-    Set seen = Diagram::none();
-    bool exact = true;
-    for (const Class& c : split.classes) {
-        exact = exact && c.variants != Diagram::none() && space.diagram->disjoint(seen, c.variants);
-        seen = space.diagram->either(seen, c.variants);
-    }
-    if (!exact || seen != space.needed)
-        build.diags.error({}, "internal error: the classes of " + shader.name + ", stage " + name_of(stage) +
-                                  ", do not partition its variants; please report this manifest");
-}
-
 void warn_unread_axes(Build& build) {
     const Manifest& manifest = *build.manifest;
     std::vector<bool> used(manifest.axes.size()), read(manifest.axes.size());
@@ -239,7 +226,6 @@ void pass_classes(Build& build, const BuildOptions& options, PassContext& contex
             auto split = std::make_unique<Split>();
             if (const auto bytes = recall(context.store, context.files, manifest.folder, asked, split->reads)) {
                 WireReader in(*bytes);
-                std::vector<SourceRead> reads = split->reads;
                 if (read_split(in, *split, space, manifest.folder))
                     hit[i] = 1;
                 else
@@ -250,7 +236,7 @@ void pass_classes(Build& build, const BuildOptions& options, PassContext& contex
                 how.max_states = options.max_states;
                 how.lines = shader.options.debug;
                 *split = split_stage(manifest, shader, *stage, space, space.needed, context.files, how);
-                if (!split->diags.has_errors() && context.store.keeps()) {
+                if (!split->diags.has_errors() && context.store.keeps() && !interrupted.load()) {
                     WireWriter out;
                     write_split(out, *split, space, manifest.folder);
                     stored[i] = remember(context.store, context.files, manifest.folder, asked, split->reads, out.view());
@@ -260,7 +246,7 @@ void pass_classes(Build& build, const BuildOptions& options, PassContext& contex
         }
     };
     const bool finished = context.jobs.each(first.size() - 1, split_shader);
-    if (!finished) {
+    if (!finished || interrupted.load()) {
         stopped(build);
         return;
     }
@@ -271,8 +257,6 @@ void pass_classes(Build& build, const BuildOptions& options, PassContext& contex
         build.work.cache_hits += hit[i];
         build.work.preprocessed += hit[i] != 0 ? 0 : build.splits[i]->lexed;
         note_store_failure(build, stored[i]);
-        if (!build.splits[i]->diags.has_errors())
-            check_partition(build, *build.stages[i].space, *build.stages[i].shader, build.stages[i].stage, *build.splits[i]);
     }
     if (build.ok()) warn_unread_axes(build);
 }

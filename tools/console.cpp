@@ -115,8 +115,15 @@ Progress console_progress() {
     if (::isatty(STDERR_FILENO) == 1 && (term == nullptr || std::strcmp(term, "dumb") != 0)) return terminal_progress();
     const char* const asked = std::getenv("KILN_PROGRESS");
     if (asked != nullptr && std::strcmp(asked, "off") == 0) return {};
-    const bool number = asked != nullptr && std::strspn(asked, "0123456789") == std::strlen(asked) && *asked != '\0';
-    return log_progress(std::chrono::seconds(number ? std::strtol(asked, nullptr, 10) : 30));
+    long apart = 30;
+    if (asked != nullptr) {
+        const size_t length = std::strlen(asked);
+        if (length > 0 && length < 6 && std::strspn(asked, "0123456789") == length)
+            apart = std::strtol(asked, nullptr, 10);
+        else
+            print_note(std::string("KILN_PROGRESS takes seconds from 0 to 99999 or 'off', not '") + asked + "'; taken for 30");
+    }
+    return log_progress(std::chrono::seconds(apart));
 }
 
 void clear_progress() {

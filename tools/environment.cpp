@@ -14,7 +14,7 @@ struct Variable {
 constexpr Variable variables[] = {
     {"KILN_CACHE", "what --cache takes: a folder or 'none', and a cache server; several with commas"},
     {"KILN_CACHE_SIZE", "bound of the cache folder, as 300M or 5G; 0 for none"},
-    {"KILN_CACHE_SYNC", "what an entry waits for: none, file (default) or folder"},
+    {"KILN_CACHE_SYNC", "what an entry waits for: none (default), file or folder"},
     {"KILN_CACHE_TIMEOUT", "seconds to wait for an answer of a cache server"},
     {"KILN_CACHE_DRAIN", "seconds that a finished build waits for its last uploads"},
     {"KILN_CACHE_READ_ONLY", "1: send nothing to the cache server"},

@@ -3,7 +3,7 @@
 
 namespace kiln {
 
-// `kiln help environment`: every variable that kiln reads, a line each.
+// `kiln help environment`: every variable of kiln's own that it reads, a line each.
 std::string help_of_environment();
 
 }  // namespace kiln

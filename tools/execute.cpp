@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <thread>
 
 #include "cache/execute/local_engine.h"
 #include "cache/execute/slurm_engine.h"
@@ -135,7 +136,8 @@ int print_plan(const Args& args, const BuildOptions& options, PassContext& conte
     std::map<std::string, double> step_ms;
     for (const auto& [step, ms] : build.ms) step_ms[step] += ms, here += ms;
     // What this machine gave others in the meantime is not the work's: times are those of processors to themselves.
-    const double jobs = static_cast<double>(context.jobs.threads()), sent = step_ms["modules"] + step_ms["artifacts"];
+    const double jobs = std::min<double>(context.jobs.threads(), std::max(1u, std::thread::hardware_concurrency()));
+    const double sent = step_ms["modules"] + step_ms["artifacts"];
     const double share = std::clamp(used / (sent * jobs + here - sent), 0.01, 1.0);
     for (auto& [step, ms] : step_ms) ms *= share;
     const double alone = here * share, rest = (here - sent) * share;

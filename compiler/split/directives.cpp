@@ -183,12 +183,15 @@ void Preprocessor::include(const Token& at, const Token* begin, const Token* end
         return;
     }
     // Two includes in each of thirty files are a billion files read, all well within the depth.
-    constexpr size_t most_included = 50'000'000;  // tokens, and as much for a file as for 50 of them
     const LexedFile& included = sources_.file(*found.file).lexed;
-    included_ += included.tokens.size() + included.items.size() + 50;
-    if (included_ > most_included) {
-        pp_.findings.error(*begin, "includes read more than can be compiled: " + std::string(name) + " once more", here_);
+    included_ += included.tokens.size() + included.items.size() + 50;  // tokens, and as much for a file as for 50 of them
+    if (included_ > Preprocessing::max_work) {
+        pp_.findings.error(*begin,
+                           "with '" + std::string(name) + "' once more the includes read more than " +
+                               std::to_string(Preprocessing::max_work) + " tokens",
+                           here_);
         kill(here_);
+        here_ = pp_.diagram.minus(outer, dead_);
         return;
     }
     const bool apart = here_ != outer;

@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "compiler/base/jobs.h"
+
 namespace kiln {
 
 Preprocessor::Preprocessor(Preprocessing& pp, Sources& sources, Emitted& emitted, const Options& options, uint64_t max_states)
@@ -96,6 +98,11 @@ void Preprocessor::read_file(uint16_t index, size_t depth) {
         return;
     }
     for (size_t i = 0; i < file.items.size();) {
+        if (interrupted.load(std::memory_order_relaxed)) {
+            over_limit_ = true;  // nothing more is read, in any file
+            here_ = Diagram::none();
+            return;
+        }
         const Item& item = file.items[i];
         Token at;
         at.file = index;

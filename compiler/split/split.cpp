@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "compiler/base/jobs.h"
 #include "compiler/space/describe.h"
 #include "compiler/split/class_text.h"
 #include "compiler/split/predefined.h"
@@ -96,14 +97,12 @@ std::string busiest_axes(const Space& space, const std::vector<Set>& sets, Set s
 }  // namespace
 
 bool partition(const std::vector<Class>& classes, Diagram& diagram, Set whole) {
-    // Together they are it, and their counts add up.
-    Set all = Diagram::none();
-    Count sum;
+    Set seen = Diagram::none();
     for (const Class& c : classes) {
-        all = diagram.either(all, c.variants);
-        sum += diagram.count(c.variants);
+        if (c.variants == Diagram::none() || !diagram.disjoint(seen, c.variants)) return false;
+        seen = diagram.either(seen, c.variants);
     }
-    return all == whole && sum == diagram.count(whole);
+    return seen == whole && !diagram.exhausted();
 }
 
 Split split_stage(const Manifest& manifest, const Shader& shader, const StageFile& stage, Space& space, Set start, Files& files,
@@ -132,6 +131,7 @@ Split split_stage(const Manifest& manifest, const Shader& shader, const StageFil
     for (const auto& [name, body] : shader.defines) preprocessor.predefine(name, body, start);
     for (uint32_t axis = 0; axis < space.axes.size(); ++axis) preprocessor.predefine_axis(axis, start);
     preprocessor.run(*root.file, start);
+    if (interrupted.load()) return out;
 
     std::vector<Emitted::Group> groups;
     bool over = preprocessor.over_limit();

@@ -51,10 +51,11 @@ struct SplitOptions {
     bool lines = false;  // -g: keep file and line of every token in the class text (#line), so layout splits classes
 };
 
-// True when the classes are disjoint and together `whole`.
+// True when the classes are disjoint, none is empty, and together they are `whole`.
 bool partition(const std::vector<Class>& classes, Diagram& diagram, Set whole);
 
-// `start` is the set to split (needed variants). `stage.file` is found as an include of the manifest would be.
+// No classes and no error when `interrupted` is set meanwhile. `start` is the set to split (needed variants). `stage.file` is
+// found as an include of the manifest would be.
 Split split_stage(const Manifest& manifest, const Shader& shader, const StageFile& stage, Space& space, Set start, Files& files,
                   const SplitOptions& options);
 

@@ -14,5 +14,8 @@ sed -i 's/boool/bool/' p/m.yaml
 KILN_PROGRESS=0 kiln build p/m.yaml -o b.kiln --cache none >out 2>err
 grep -q '^kiln: .* [0-9]*/[0-9]*' err || fail "no line of progress with KILN_PROGRESS=0"
 ! grep -q $'\r' err || fail "a rewritten line in a file"
+KILN_PROGRESS=99999999999999999999 kiln build p/m.yaml -o b.kiln --cache none >out 2>err
+grep -q "not '99999999999999999999'" err || fail "a KILN_PROGRESS that is no number was taken"
+! grep -q '[0-9]/[0-9]' err || fail "KILN_PROGRESS ran over"
 KILN_PROGRESS=off kiln build p/m.yaml -o b.kiln --cache none >out 2>err
 [ ! -s err ] || fail "KILN_PROGRESS=off printed something"
