@@ -69,7 +69,7 @@ vec3 gathered() {
 #elif INDIRECT == INDIRECT_RSM_ALL
     return rsm_gather_all(rsm_position, rsm_facing, rsm_intensity, x, n);
 #elif INDIRECT == INDIRECT_RSM_TAPS
-    return rsm_gather(rsm_position, rsm_facing, rsm_intensity, x, n, screen_uv, min(reach, 0.5), vec2(0.3125, 0.0625));
+    return rsm_gather(rsm_position, rsm_facing, rsm_intensity, x, n, screen_uv, min(reach, 0.5), vec2(0.28125, 0.0625));
 #elif INDIRECT == INDIRECT_CONES
     const float voxel = 1.0 / float(textureSize(radiance_volume, 0).x);
     return cone_gather(radiance_volume, x + 0.5, n, voxel, reach).rgb;

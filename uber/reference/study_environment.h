@@ -38,11 +38,7 @@ Vec2<T> split_sum_of_points(const T& n_dot_v, const T& alpha, V visibility, F fr
     Vec2<T> sum{T(0), T(0)};
     for (uint32_t i = 0; i < count; ++i) {
         const Vec2<double> u = hammersley(i, count);
-        const Vec3<double> about = sample_ggx_half(hammersley(i, count), value(alpha));
-        // Vulkan bounds sine and cosine on [-pi, pi] alone; the turns beyond are held to the same here.
-        const double slack = std::sqrt(1 - about.z * about.z) * 0x1p-11;
-        const T z = sample_ggx_half(Vec2<T>{T(u.x), T(0)}, alpha).z;
-        const Vec3<T> h{loosened(T(about.x), slack + error_of(z)), loosened(T(about.y), slack + error_of(z)), z};
+        const Vec3<T> h = sample_ggx_half(Vec2<T>{T(u.x), T(u.y)}, alpha);
         const T v_dot_h = dot(v, h), n_dot_l = T(2) * v_dot_h * h.z - cosine;
         if (!(n_dot_l > T(0))) continue;
         const T weight = T(4) * visibility(n_dot_l, cosine) * n_dot_l * v_dot_h / h.z, fc = fresnel_weight(n_dot_l, v_dot_h);

@@ -99,20 +99,6 @@ struct IndirectMaps {
     VoxelCube radiance_volume, distance_field;
 };
 
-// Cosine and sine of an angle as near as Vulkan bounds them on [-pi, pi]: of angles outside it says nothing.
-template <class T>
-Vec2<T> bounded_turn(double angle) {
-    return {loosened(T(std::cos(angle)), 0x1p-11), loosened(T(std::sin(angle)), 0x1p-11)};
-}
-template <class T>
-Vec3<T> bounded_cosine_direction(const Vec2<double>& u, const Vec3<T>& n) {
-    Vec3<T> t, b;
-    gi_basis(n, t, b);
-    const Vec2<T> turn = bounded_turn<T>(2 * pi * u.y);
-    const T r = sqrt(loosened(T(u.x), bounds::ulp));
-    return t * (r * turn.x) + b * (r * turn.y) + n * sqrt(max(T(1) - loosened(T(u.x), bounds::ulp), T(0)));
-}
-
 template <class T>
 Vec3<T> study_indirect(const std::string& form, const IndirectBlock& b, const IndirectMaps& maps, const Vec2<T>& uv) {
     constexpr int rsm_size = 8, rsm_taps = 8, cone_steps = 12, sdf_cones = 4, sdf_steps = 12, screen_rays = 2, screen_steps = 8;
@@ -133,34 +119,30 @@ Vec3<T> study_indirect(const std::string& form, const IndirectBlock& b, const In
                                   [&](int i, int j) { return fetch(maps.rsm_facing, i, j).xyz(); },
                                   [&](int i, int j) { return fetch(maps.rsm_intensity, i, j).xyz(); }, x, n, rsm_size);
         if (form == "rsm_taps") {
-            const double wide = std::min(b.reach, 0.5);
             Vec3<T> sum = splat3(T(0));
             for (int i = 0; i < rsm_taps; ++i) {
-                const Vec2<double> u = gi_hammersley(i, rsm_taps, Vec2<double>{0.3125, 0.0625});
-                const Vec2<T> turn = bounded_turn<T>(2 * pi * u.y);
-                const T r = T(wide) * T(u.x), weight = T(2 * pi) * r * T(wide) * T(rsm_size * rsm_size);
-                const Vec2<T> at{uv.x + r * turn.x, uv.y + r * turn.y};
+                const Vec3<T> tap =
+                    rsm_tap(gi_hammersley(i, rsm_taps, Vec2<T>{T(0.28125), T(0.0625)}), min(reach, T(0.5)), T(rsm_size));
+                const Vec2<T> at = uv + tap.xy();
                 if (at.x < T(0) || at.y < T(0) || at.x >= T(1) || at.y >= T(1)) continue;
                 const int px = to_int(at.x * T(rsm_size)), py = to_int(at.y * T(rsm_size));
                 const Vec4<T> y = fetch(maps.rsm_position, px, py);
                 sum = sum + rsm_irradiance(x, n, y.xyz(), fetch(maps.rsm_facing, px, py).xyz(),
                                            fetch(maps.rsm_intensity, px, py).xyz(), y.w) *
-                                weight;
+                                tap.z;
             }
             return sum / T(rsm_taps);
         }
         const auto radiance = [&](const Vec3<T>& at, const T& level) { return maps.radiance_volume(at, level); };
         const T voxel(1.0 / maps.radiance_volume.side());
         if (form == "cones") {
-            Vec3<T> t, across, sum = splat3(T(0));
-            gi_basis(n, t, across);
+            Vec3<T> sum = splat3(T(0));
             for (int i = 0; i < 6; ++i) {
-                const Vec2<T> turn = bounded_turn<T>(2 * pi / 5 * i);
-                const Vec3<T> direction = i == 0 ? n : (t * turn.x + across * turn.y) * T(std::sqrt(0.75)) + n * T(0.5);
-                sum = sum + cone_march(radiance, x + half + n * voxel, direction, T(1 / std::sqrt(3.0)), voxel, voxel, reach,
+                const Vec4<T> cone = cone_of_six(i, n);
+                sum = sum + cone_march(radiance, x + half + n * voxel, cone.xyz(), T(1 / std::sqrt(3.0)), voxel, voxel, reach,
                                        cone_steps)
                                     .xyz() *
-                                T(i == 0 ? 0.25 : 0.15);
+                                cone.w;
             }
             return sum * T(pi);
         }
@@ -172,11 +154,11 @@ Vec3<T> study_indirect(const std::string& form, const IndirectBlock& b, const In
             }
             const Vec3<T> at{uv.x - T(0.5), -(uv.y - T(0.5)), T(-1.5)}, towards{T(0), T(0), T(1)};
             const auto depth = [&](const Vec2<T>& p) { return maps.scene_depth.channel(p, 0); };
-            const double first = gi_random(state), second = gi_random(state);
+            const T first(gi_random(state)), second(gi_random(state));
+            const Vec2<T> shift{first, second};
             Vec3<T> sum = splat3(T(0));
             for (int i = 0; i < screen_rays; ++i) {
-                const Vec3<T> direction =
-                    bounded_cosine_direction(gi_hammersley(i, screen_rays, Vec2<double>{first, second}), towards);
+                const Vec3<T> direction = gi_cosine_direction(gi_hammersley(i, screen_rays, shift), towards);
                 const T jitter(gi_random(state));
                 Vec2<T> hit;
                 if (screen_march(depth, projection, at + towards * (T(2e-3) * -at.z), direction, reach, T(b.thickness), jitter,
@@ -194,12 +176,14 @@ Vec3<T> study_indirect(const std::string& form, const IndirectBlock& b, const In
         };
         const T texel(1.0 / maps.distance_field.side()), near = T(0.5) * texel;
         if (form == "sdf_cones") {
-            const double first = gi_random(state), second = gi_random(state), cosine = 1 - 1.0 / sdf_cones;
+            const T first(gi_random(state)), second(gi_random(state));
+            const Vec2<T> shift{first, second};
+            const double cosine = 1 - 1.0 / sdf_cones;
             const T tangent(std::sqrt(1 - cosine * cosine) / cosine);
             const Vec3<T> origin = x + n * (T(2) * near);
             Vec3<T> sum = splat3(T(0));
             for (int i = 0; i < sdf_cones; ++i) {
-                const Vec3<T> direction = bounded_cosine_direction(gi_hammersley(i, sdf_cones, Vec2<double>{first, second}), n);
+                const Vec3<T> direction = gi_cosine_direction(gi_hammersley(i, sdf_cones, shift), n);
                 const T t = sdf_trace(field, origin, direction, T(0), reach, near, sdf_steps);
                 if (t < T(0)) continue;
                 const Vec4<T> there = radiance(origin + direction * t + half, log2(max(T(2) * t * tangent / voxel, T(1))));

@@ -23,22 +23,6 @@ struct SubsurfaceMaps {
     Texture2D preintegrated_table, irradiance_picture;
 };
 
-// burley_gather with taps' directions as near as Vulkan bounds sine and cosine on [-pi, pi]: of the turns beyond it says nothing.
-template <class T, class F>
-Vec3<T> burley_gather_bounded(F irradiance, const Vec2<T>& uv, const T& across, const Vec3<T>& s, const T& drawn, double turn,
-                              int taps) {
-    Vec3<T> sum = splat3(T(0)), weights = splat3(T(0));
-    for (int i = 0; i < taps; ++i) {
-        const double phi = pi * (3 - std::sqrt(5.0)) * i + turn;
-        const T r = burley_radius((T(i) + T(0.5)) / T(taps), drawn);
-        const Vec2<T> direction{loosened(T(std::cos(phi)), 0x1p-11), loosened(T(std::sin(phi)), 0x1p-11)};
-        const Vec3<T> weight = burley_tap_weight(r, s, drawn);
-        sum = sum + weight * irradiance(uv + direction * (r * across));
-        weights = weights + weight;
-    }
-    return sum / weights;
-}
-
 template <class T>
 Vec3<T> study_subsurface(const std::string& form, const SubsurfaceBlock& b, const SubsurfaceMaps& maps, const Vec2<T>& uv) {
     constexpr int burley_taps = 16, ring_steps = 8, separable_taps = 9;  // as the shader has them
@@ -67,7 +51,8 @@ Vec3<T> study_subsurface(const std::string& form, const SubsurfaceBlock& b, cons
     }
     const auto picture = [&](const Vec2<T>& at) { return maps.irradiance_picture.rgb(at); };
     const T across = T(1) / width;
-    if (form == "gather_burley") return albedo * burley_gather_bounded(picture, uv, across, s, smallest, b.turn, burley_taps);
+    if (form == "gather_burley")
+        return albedo * burley_gather(picture, uv, Vec2<T>{across, across}, s, smallest, T(b.turn), burley_taps);
     if (form == "separable_burley")
         return albedo *
                separable_gather(picture, uv, Vec2<T>{across, T(0)}, separable_kernel_burley(s, T(9) / smallest, separable_taps));
