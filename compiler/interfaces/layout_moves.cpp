@@ -39,7 +39,9 @@ public:
                 for (const Resource& r : modules_.list[module].reflection.resources) add(r, variants, shader_.stages[i]);
         for (const auto& [place, forms] : forms_) {
             kinds(forms);
-            blocks(forms);
+            std::set<std::pair<ResourceKind, std::string>> seen;
+            for (const Form& f : forms)
+                if (is_block(f.resource->kind) && seen.emplace(f.resource->kind, f.resource->name).second) blocks(forms, f);
         }
     }
 
@@ -117,12 +119,11 @@ private:
     }
 
     // Of all members that move the first one is named: the others move because of it, or are found next time.
-    void blocks(const std::vector<Form>& forms) {
-        if (!is_block(forms.front().resource->kind)) return;
+    void blocks(const std::vector<Form>& forms, const Form& first) {
         std::map<std::string, std::vector<std::pair<const Member*, Set>>> members;  // name -> distinct layouts
         std::vector<std::string> order;
         for (const Form& f : forms) {
-            if (f.resource->kind != forms.front().resource->kind || f.resource->name != forms.front().resource->name) continue;
+            if (f.resource->kind != first.resource->kind || f.resource->name != first.resource->name) continue;
             for (const Member& m : f.resource->members) {
                 auto [at, fresh] = members.try_emplace(m.name);
                 if (fresh) order.push_back(m.name);
@@ -145,7 +146,7 @@ private:
             for (const uint32_t a : moving_axes(ways)) axes.insert(a);
             if (!worst || ways.front().first->offset < worst->front().first->offset) worst = &ways;
         }
-        if (worst) report_move(forms.front(), *worst, axes, moved);
+        if (worst) report_move(first, *worst, axes, moved);
     }
 
     std::set<uint32_t> moving_axes(const std::vector<std::pair<const Member*, Set>>& ways) {

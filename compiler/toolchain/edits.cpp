@@ -166,29 +166,48 @@ void rename_varying(const ir::View& view, const ir::Variable& variable, bool fla
     }
 }
 
-// The reader's interpolation, where it is known; and integers are flat in any case, as GL wants it said on both sides.
+// The reader's interpolation, where it is known; and integers are flat in any case, as GL wants it said on both sides. A
+// structure that is no block has its interpolation on the variable, which SPIRV-Cross forgets when it takes it apart: its members
+// are given it.
 void plan_interpolation(const ir::View& view, const ir::Variable& variable, const SlotLayout& layout, Edits& out) {
-    const auto plan = [&](uint32_t id, bool is_member, uint32_t member, uint32_t location, uint32_t type, bool is_flat) {
-        Interpolation how{location, is_flat, false, false, false};
-        const auto read = std::find_if(layout.interpolation.begin(), layout.interpolation.end(),
-                                       [&](const Interpolation& i) { return i.location == location; });
-        const bool known = read != layout.interpolation.end();
-        if (known) how = *read;
-        if (is_integer(view, type)) how.flat = true;
-        if (known || how.flat != is_flat) out.interpolate.push_back({id, is_member, member, how});
-    };
     const ir::Decorations& marks = view.marks(variable.id);
     const uint32_t bare = bare_type(view, variable.type);
     const ir::Type& t = view.type(bare);
+    const bool apart = t.kind == ir::Kind::structure && !view.marks(bare).block;
+    const auto plan = [&](Edits::Interpolate what, uint32_t location, uint32_t type, const ir::Decorations& own) {
+        what.how = {location, own.flat, own.no_perspective, own.centroid, own.sample};
+        if (apart) {
+            what.how.flat |= marks.flat;
+            what.how.no_perspective |= marks.no_perspective;
+            what.how.centroid |= marks.centroid;
+            what.how.sample |= marks.sample;
+        }
+        const Interpolation said{location, own.flat, own.no_perspective, own.centroid, own.sample};
+        const auto read = std::find_if(layout.interpolation.begin(), layout.interpolation.end(),
+                                       [&](const Interpolation& i) { return i.location == location; });
+        if (read != layout.interpolation.end()) what.how = *read;
+        if (is_integer(view, type)) what.how.flat = true;
+        if (apart || what.how != said) out.interpolate.push_back(what);
+    };
     uint32_t location = or_zero(marks.location);
-    if (t.kind != ir::Kind::structure || !view.marks(bare).block)
-        return plan(variable.id, false, 0, location, variable.type, marks.flat);
+    if (t.kind != ir::Kind::structure) return plan({variable.id, false, 0, {}}, location, variable.type, marks);
     for (uint32_t m = 0; m < t.members.size(); ++m) {
         const ir::Decorations& member = view.member_marks(bare, m);
         if (member.location != ir::none) location = member.location;
-        plan(bare, true, m, location, t.members[m], member.flat);
+        plan({bare, true, m, {}}, location, t.members[m], member);
         location += locations_of(view, t.members[m]);
     }
+}
+
+// A structure's members can be interpolated in one way only, however many varyings are made of it.
+bool interpolated_in_two_ways(const Edits& edits) {
+    for (const Edits::Interpolate& x : edits.interpolate)
+        for (const Edits::Interpolate& y : edits.interpolate) {
+            Interpolation other = y.how;
+            other.location = x.how.location;
+            if (x.is_member && y.is_member && x.id == y.id && x.member == y.member && other != x.how) return true;
+        }
+    return false;
 }
 
 void plan_varyings(const ir::View& view, const Reflection& reflection, Target target, const SlotLayout& layout, Edits& out) {
@@ -201,7 +220,10 @@ void plan_varyings(const ir::View& view, const Reflection& reflection, Target ta
         if (view.type(bare).kind == ir::Kind::structure && view.member_marks(bare, 0).builtin != ir::none) continue;
         if (links_by_name(target) || layout.flat_blocks) rename_varying(view, v, layout.flat_blocks, out);
         if (layout.flat_blocks && !links_by_name(target)) out.unplaced.push_back(v.id);
-        if (v.storage == ir::sc_output && reflection.stage == layout.rasterised) plan_interpolation(view, v, layout, out);
+        const bool read_apart = v.storage == ir::sc_input && reflection.stage == Stage::fragment &&
+                                view.type(bare).kind == ir::Kind::structure && !view.marks(bare).block;
+        if (read_apart || (v.storage == ir::sc_output && reflection.stage == layout.rasterised))
+            plan_interpolation(view, v, layout, out);
     }
 }
 
@@ -243,6 +265,8 @@ Result<Edits> plan_edits(const ir::View& view, const Reflected& reflected, Targe
         out.bindings.emplace_back(d.variable, gl_number(*slot));
     }
     plan_varyings(view, reflected.reflection, target, layout, out);
+    if (interpolated_in_two_ways(out))
+        return input_error("one structure is the type of two varyings that are interpolated differently");
     return out;
 }
 

@@ -77,7 +77,7 @@ constexpr Limit limits[] = {
     {Feature::interlock, "a fragment shader interlock", 450, never, 0, 0},
     {Feature::early_depth, "gl_FragDepth together with early_fragment_tests", 0, never, 0, 0},
     {Feature::indexed_outputs, "an array of fragment outputs with an index that is no constant", 0, never, 0, 0},
-    {Feature::memory_barrier, "barriers of memory outside compute shaders", 420, 310, 0, 0},
+    {Feature::memory_barrier, "barriers of memory outside compute shaders", 420, 310, never, never},
     {Feature::transform_feedback, "layouts of transform feedback", 440, 0, 0, 0},
 };
 

@@ -954,6 +954,24 @@ layout(xfb_buffer=1,xfb_offset=0,xfb_stride=16,location=1) out vec4 r;
 void main(){
 gl_Position=p; q=p; r=p;
 })"},
+    {Stage::vertex, "vstruct",
+     R"(layout(location=0) in vec4 p; struct S { ivec2 a; vec2 b; };
+layout(location=1) flat out S s; layout(location=4) noperspective out vec2 c;
+void main(){
+gl_Position=p; s.a=ivec2(p.xy); s.b=p.zw; c=p.xy;
+})"},
+    {Stage::fragment, "fstruct",
+     R"(struct S { ivec2 a; vec2 b; };
+layout(location=1) flat in S s; layout(location=0) out vec4 o;
+void main(){
+o=vec4(s.a,s.b);
+})"},
+    {Stage::fragment, "fstructs",
+     R"(struct S { vec2 b; };
+layout(location=1) flat in S s; layout(location=2) in S t; layout(location=0) out vec4 o;
+void main(){
+o=vec4(s.b,t.b);
+})"},
 };
 
 }  // namespace kiln

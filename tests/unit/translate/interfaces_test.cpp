@@ -243,6 +243,31 @@ void main() {
     EXPECT_NE(text.find("uniform block 'Colour' in 2 of 4 variants of lit: exactly when tex == 0"), std::string::npos) << text;
 }
 
+// Two blocks of one place, neither of them the first form: both are looked at.
+TEST(Interfaces, BlocksBehindAnotherKindAreCompared) {
+    MiniBuild b("lit", {{"kind", 3}});
+    b.add(Stage::fragment, R"(
+#if kind == 0
+layout(set=1, binding=2) uniform sampler2D map;
+#else
+layout(set=1, binding=2) uniform Colour {
+#if kind == 2
+  vec4 pad;
+#endif
+  vec4 c; };
+#endif
+layout(location=0) out vec4 o;
+void main() {
+#if kind == 0
+  o = texture(map, vec2(0));
+#else
+  o = c;
+#endif
+})");
+    const std::string text = all_text(check_interfaces(b.stages, b.modules).diags);
+    EXPECT_NE(text.find("member 'c' moves from 0 to 16"), std::string::npos) << text;
+}
+
 TEST(Interfaces, KindsThatClashWithinAVariant) {
     MiniBuild b("lit", {{"tex", 2}, {"idle", 2}});
     b.add(Stage::fragment, R"(

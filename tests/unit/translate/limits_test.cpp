@@ -83,6 +83,15 @@ TEST(Limits, KnownHolesAreRefusedWithAReason) {
         {"nonuniformsized", Target::essl310, "nonuniformEXT"},
         {"ginstanced", Target::glsl330, "invocations of a geometry shader: not before GLSL 4.00"},
         {"int64", Target::hlsl50, "64-bit"},
+        {"earlydepth", Target::essl310, "gl_FragDepth together"},
+        {"outindex", Target::essl310, "array of fragment outputs"},
+        {"interlock", Target::essl310, "interlock"},
+        {"vbarrier", Target::glsl330, "barriers of memory"},
+        {"vbarrier", Target::hlsl60, "barriers of memory"},
+        {"vbarrier", Target::msl21, "barriers of memory"},
+        {"vxfb", Target::glsl330, "transform feedback"},
+        {"fstructs", Target::glsl330, "interpolated differently"},
+        {"fstructs", Target::essl310, "interpolated differently"},
     };
     for (const auto& hole : holes) {
         const FeatureShader* shader = nullptr;
@@ -95,6 +104,24 @@ TEST(Limits, KnownHolesAreRefusedWithAReason) {
             << got.text;
         EXPECT_TRUE(got.text.empty()) << hole.name;
     }
+}
+
+// Beside the holes: what a limit must leave alone.
+TEST(Limits, WhatIsNoHoleIsNotRefused) {
+    const struct {
+        const char* name;
+        Target target;
+    } whole[] = {
+        {"earlydepth", Target::glsl450}, {"outindex", Target::glsl330}, {"interlock", Target::glsl450},
+        {"vbarrier", Target::glsl450},   {"vbarrier", Target::essl310}, {"vxfb", Target::glsl450},
+        {"vstruct", Target::glsl330},    {"vstruct", Target::glsl450},  {"fstruct", Target::essl300},
+        {"fstruct", Target::essl310},    {"fstructs", Target::hlsl60},
+    };
+    for (const auto& one : whole)
+        for (const FeatureShader& s : feature_shaders)
+            if (std::string(s.name) == one.name) {
+                EXPECT_EQ(translate(words_of(s), {one.target}).at(0).refusal, "") << one.name << " " << name_of(one.target);
+            }
 }
 
 TEST(Limits, TheFirstBlendSourceAloneIsNoLimit) {
