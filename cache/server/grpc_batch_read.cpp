@@ -114,8 +114,8 @@ private:
         return finish(), true;
     }
     void begin() override {
-        read(nullptr);
-        finish();
+        if (read(nullptr)) return finish();
+        end(stopping());
     }
     void end(const grpc::Status& status) override { writer_.FinishWithError(ended(status), tag()); }
     std::string subject() const override { return asked_.instance_name(); }
@@ -140,9 +140,10 @@ private:
         return grpc::Status::OK;
     }
 
-    // False: the next blob must be hashed first, which `slow` does not want.
+    // False: the next blob must be hashed first, which `slow` does not want, or the server is stopping.
     bool read(bool* slow) {
         for (; next_ < names_.size(); ++next_) {
+            if (shared_.ending) return false;
             auto found = reads_->open(names_[next_].digest, slow, 0);
             if (slow != nullptr && *slow) return false;
             put_blob(pieces_, asked_.digests(static_cast<int>(next_)), names_[next_], std::move(found));

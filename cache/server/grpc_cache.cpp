@@ -136,6 +136,7 @@ private:
         page_.Clear();
         size_t bytes = 0;
         while (!ahead_.empty() && bytes < 1024 * 1024) {
+            if (shared_.ending) return end(stopping());
             const BlobName name = ahead_.front();
             ahead_.pop_front();
             auto file = shared_.service.blob(*caller_, request_.instance_name(), name.digest);
@@ -189,6 +190,7 @@ private:
         if (!instance.ok()) return status_of(instance.refused());
         if (request.blob_digests_size() > grpc_most_entries) return invalid("more digests than one message may name");
         for (const reapi::Digest& digest : request.blob_digests()) {
+            if (shared_.ending) return stopping();
             const auto name = name_of(digest);
             if (!name) return invalid("a digest is none");
             const auto there = shared_.service.has_blob(caller, request.instance_name(), *name);
@@ -205,6 +207,7 @@ private:
         if (!instance.ok()) return status_of(instance.refused());
         if (request.requests_size() > grpc_most_entries) return invalid("more blobs than one message may hold");
         for (const auto& one : request.requests()) {
+            if (shared_.ending) return stopping();
             auto& said = *out.add_responses();
             *said.mutable_digest() = one.digest();
             set_status(said.mutable_status(), put(caller, request.instance_name(), one));

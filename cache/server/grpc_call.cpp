@@ -55,20 +55,27 @@ void Call::guarded(Step step) {
     }
 }
 
+template <class Step>
+void Call::post(Step step) {
+    shared_.work.post([this, step] {
+        if (shared_.ending) return end(stopping());
+        guarded(step);
+    });
+}
+
 void Call::on_event(bool ok) {
     if (state_ == State::ends || (state_ == State::waits && !ok)) {
         delete this;
         return;
     }
-    if (state_ == State::runs) return shared_.work.post([this, ok] { guarded([this, ok] { go_on(ok); }); });
+    if (state_ == State::runs) return post([this, ok] { go_on(ok); });
     state_ = State::runs;
-    ++shared_.under_way;
     wait_for_next();
     began_ = std::chrono::steady_clock::now();
     caller_ = shared_.caller(context_);
     bool done = true;
     guarded([&] { done = begin_at_once(); });
-    if (!done) shared_.work.post([this] { guarded([this] { begin(); }); });
+    if (!done) post([this] { begin(); });
 }
 
 const grpc::Status& Call::ended(const grpc::Status& status) {
@@ -111,6 +118,8 @@ grpc::Status status_of(const Refused& refused) {
 }
 
 grpc::Status invalid(const std::string& what) { return {grpc::StatusCode::INVALID_ARGUMENT, what}; }
+
+grpc::Status stopping() { return {grpc::StatusCode::UNAVAILABLE, "the server is stopping"}; }
 
 grpc::Status check_function(int digest_function) {
     if (digest_function == reapi::DigestFunction::UNKNOWN || digest_function == reapi::DigestFunction::SHA256)

@@ -43,7 +43,9 @@ struct CallContext {
     const std::function<std::shared_ptr<const Access>()> access;
     const GrpcOptions options;
     WorkPool work;
-    std::atomic<size_t> under_way{0};  // calls that have begun and not been deleted
+    std::atomic<size_t> calls{0};  // that are there, the waiting among them: each needs its queue until its last event
+    // Patience with what is under way is over: a call ends at its next step, in loops over many blobs at the next one.
+    std::atomic<bool> ending{false};
 
     // By the metadata "authorization: Bearer T" (or Basic); a field that is neither is no token.
     std::shared_ptr<const Caller> caller(const grpc::ServerContext& context) const;
@@ -62,10 +64,10 @@ public:
 protected:
     // `method` outlives the call.
     Call(CallContext& shared, grpc::ServerCompletionQueue& queue, const char* method)
-        : shared_(shared), queue_(queue), method_(method) {}
-    virtual ~Call() {
-        if (state_ != State::waits) --shared_.under_way;
+        : shared_(shared), queue_(queue), method_(method) {
+        ++shared_.calls;
     }
+    virtual ~Call() { --shared_.calls; }
     virtual void wait_for_next() = 0;               // makes the object that waits for the next call of this method
     virtual bool begin_at_once() { return false; }  // without waiting for anything; false: begin() has to
     virtual void begin() = 0;
@@ -90,6 +92,8 @@ private:
     enum class State { waits, runs, ends };
     template <class Step>
     void guarded(Step step);
+    template <class Step>
+    void post(Step step);
     const char* const method_;
     State state_ = State::waits;
     Service::Lease answer_;
@@ -167,6 +171,7 @@ constexpr int grpc_most_entries = 65'536;
 
 grpc::Status status_of(const Refused& refused);
 grpc::Status invalid(const std::string& what);
+grpc::Status stopping();
 // Only SHA-256 is spoken; 0 is a client that says nothing.
 grpc::Status check_function(int digest_function);
 std::optional<BlobName> name_of(const reapi::Digest& digest);

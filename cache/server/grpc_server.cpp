@@ -29,15 +29,16 @@ GrpcServer::~GrpcServer() { drain(std::chrono::seconds(0)); }
 
 uint16_t GrpcServer::port() const { return static_cast<uint16_t>(calls_->port); }
 
-// gRPC wants a queue to be shut down when nothing can be asked of it any more, so the server goes first: its end waits for that
-// of every call, and the pool has none then.
+// gRPC wants a queue to be shut down when nothing can be asked of it any more, so the server goes first. A call that was cut is
+// over for gRPC then and has yet to hear of it, and its answer needs the queue; those that waited for a client hear of the end
+// as well. The pool has no step of any of them after that.
 void GrpcServer::drain(std::chrono::seconds patience) {
     if (calls_->server) {
         calls_->server->Shutdown(std::chrono::system_clock::now() + patience);
+        calls_->context->ending = true;
         calls_->server->Wait();
     }
-    // A call that was cut is over for gRPC and has yet to hear of it, and its answer needs the queue.
-    while (calls_->context->under_way != 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    while (calls_->context->calls != 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     for (const auto& queue : calls_->queues) queue->Shutdown();
     for (std::thread& thread : calls_->threads) thread.join();
     calls_->threads.clear();
