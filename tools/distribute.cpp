@@ -118,14 +118,14 @@ void Distributor::send(const char* what, std::vector<Bytes> batches, const std::
 void DistributionPlan::modules(std::span<const ModuleQuestion> questions) {
     module_step.questions += questions.size();
     module_step.answers += questions.size();
-    module_step.bytes_out += write_batch(versions_, questions, {}).size();
+    module_step.bytes_out += write_batch(identity_, questions, {}).size();
     const std::lock_guard lock(mutex_);
     for (const ModuleQuestion& q : questions) asked_[q.action] = &module_step;
 }
 
 void DistributionPlan::artifacts(std::span<const ArtifactQuestion> questions) {
     artifact_step.questions += questions.size();
-    artifact_step.bytes_out += write_batch(versions_, {}, questions).size();
+    artifact_step.bytes_out += write_batch(identity_, {}, questions).size();
     const std::lock_guard lock(mutex_);
     for (const ArtifactQuestion& q : questions) {
         artifact_step.answers += q.actions.size();

@@ -58,7 +58,7 @@ private:
 // nothing.
 class DistributionPlan final : public Elsewhere, public Store {
 public:
-    explicit DistributionPlan(std::string versions) : versions_(std::move(versions)) {}
+    explicit DistributionPlan(std::string identity) : identity_(std::move(identity)) {}
     void modules(std::span<const ModuleQuestion> questions) override;
     void artifacts(std::span<const ArtifactQuestion> questions) override;
     Result<std::optional<Bytes>> get(Keyspace, const Digest&) override { return std::optional<Bytes>(); }
@@ -78,7 +78,7 @@ public:
     Step module_step{"modules", 0, module_ms}, artifact_step{"artifacts", 0, text_ms};
 
 private:
-    const std::string versions_;
+    const std::string identity_;
     std::mutex mutex_;  // of what follows, and of bytes_in
     std::map<Digest, Step*> asked_;
     std::map<Digest, uint64_t> blobs_;  // their sizes, until they are counted

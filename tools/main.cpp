@@ -26,10 +26,12 @@ void on_signal(int signal) {
     kiln::interrupted.store(true);
 }
 
-int no_verb(const std::vector<kiln::Verb>& verbs, const std::string& word) {
+// `helped`: after "help", which knows a word more.
+int no_verb(const std::vector<kiln::Verb>& verbs, const std::string& word, bool helped) {
     std::vector<std::string> names;
     for (const kiln::Verb& verb : verbs)
         if (!verb.hidden) names.emplace_back(verb.name);
+    if (helped) names.emplace_back("environment");
     const std::string near = kiln::nearest(word, names);
     return kiln::print_error(
         {kiln::Fault::usage,
@@ -54,7 +56,7 @@ int dispatch(const std::vector<kiln::Verb>& verbs, const std::vector<std::string
             if (words.size() > 1 && words[1] == verb.name) return finish(help_of(verb));
         if (words.size() > 1 && words[1] == "environment") return finish(help_of_environment());
         if (words.size() == 1 || words[0] != "help") return finish(help_of(verbs));
-        return no_verb(verbs, words[1]);
+        return no_verb(verbs, words[1], true);
     }
     if (words[0] == "--version") return finish(std::string("kiln ") + kiln_version + "\n" + make_toolchain()->versions() + "\n");
     for (const Verb& verb : verbs) {
@@ -68,7 +70,7 @@ int dispatch(const std::vector<kiln::Verb>& verbs, const std::vector<std::string
         if (!args.ok()) return print_error(args.error());
         return verb.run(*args);
     }
-    return no_verb(verbs, words[0]);
+    return no_verb(verbs, words[0], false);
 }
 
 }  // namespace

@@ -193,11 +193,11 @@ void answer_artifact(const ArtifactQuestion& question, Toolchain& tools, Answers
 
 }  // namespace
 
-Bytes write_batch(const std::string& versions, std::span<const ModuleQuestion> modules,
+Bytes write_batch(const std::string& identity, std::span<const ModuleQuestion> modules,
                   std::span<const ArtifactQuestion> artifacts) {
     WireWriter out;
     out.text(batch_mark);
-    out.text(versions);
+    out.text(identity);
     out.u64(modules.size());
     for (const ModuleQuestion& q : modules) {
         out.u8(static_cast<uint8_t>(q.stage));

@@ -1,7 +1,7 @@
 #pragma once
 // What travels to a worker and back.
 //
-//     batch   := "kiln.batch.v1" | text versions | n * module | n * artifact | XXH3-128 of all before
+//     batch   := "kiln.batch.v1" | text identity | n * module | n * artifact | XXH3-128 of all before
 //     module  := u8 stage | options | action[32] | text
 //     answers := "kiln.answers.v1" | n * blob | n * (u8 kind | action[32] | record) | XXH3-128 of all before
 //
@@ -14,8 +14,8 @@
 
 namespace kiln {
 
-// `versions`: the toolchain's identity.
-Bytes write_batch(const std::string& versions, std::span<const ModuleQuestion> modules,
+// `identity`: the toolchain's.
+Bytes write_batch(const std::string& identity, std::span<const ModuleQuestion> modules,
                   std::span<const ArtifactQuestion> artifacts);
 
 // What a worker does. An Error for what is no batch, or one of another kiln: its answers would differ.

@@ -21,9 +21,9 @@ Digest read_digest(WireReader& in) {
 
 }  // namespace
 
-Digest module_action(const std::string& tool_versions, const Options& options, Stage stage, std::string_view text) {
+Digest module_action(const std::string& identity, const Options& options, Stage stage, std::string_view text) {
     KeyHasher hasher(magic);
-    hasher.field("tools", tool_versions);
+    hasher.field("tools", identity);
     hasher.field("optimise", static_cast<uint64_t>(options.optimise));
     hasher.field("vulkan", uint64_t{options.vulkan}).field("spirv", uint64_t{options.spirv});
     hasher.field("debug", uint64_t{options.debug});

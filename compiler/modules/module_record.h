@@ -17,7 +17,7 @@ struct ModuleRecord {
 };
 
 // Everything that decides the record: tools, options that reach them, stage, tokens.
-Digest module_action(const std::string& tool_versions, const Options& options, Stage stage, std::string_view text);
+Digest module_action(const std::string& identity, const Options& options, Stage stage, std::string_view text);
 
 // record := "kiln.module.v1" | key[32] | raw[32] | pruned[32] | module[32] | n * (u8 severity | u32 line | text) | reflection
 //           | u64 XXH3-128 low | u64 high of all before

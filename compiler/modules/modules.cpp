@@ -35,6 +35,7 @@ struct Unit {
 
 // A pruned module and how to optimise it.
 struct Candidate {
+    const Unit* unit = nullptr;  // the first that it is made of
     SharedWords pruned, final;
     Options options;
     Digest pruned_digest, final_digest;
@@ -80,14 +81,14 @@ public:
 private:
     // Distinct units, in the order of stages and classes.
     void collect() {
-        const std::string versions = tools_.identity();
+        const std::string identity = tools_.identity();
         std::map<Digest, size_t> known;
         unit_of_.resize(stages_.size());
         for (size_t s = 0; s < stages_.size(); ++s) {
             const StageClasses& stage = stages_[s];
             for (size_t c = 0; c < stage.split->classes.size(); ++c) {
                 const std::string& text = stage.split->classes[c].text;
-                const Digest action = module_action(versions, stage.shader->options, stage.stage, text);
+                const Digest action = module_action(identity, stage.shader->options, stage.stage, text);
                 const auto [at, fresh] = known.emplace(action, units_.size());
                 if (fresh) units_.push_back({stage.stage, stage.shader->options, text, action, {}, false, {}, {}, {}});
                 units_[at->second].classes.emplace_back(s, c);
@@ -212,7 +213,7 @@ private:
                 continue;
             }
             const auto [at, fresh] = index.emplace(key, candidates.size());
-            if (fresh) candidates.push_back({unit.pruned, nullptr, unit.options, unit.record.pruned, {}, {}});
+            if (fresh) candidates.push_back({&unit, unit.pruned, nullptr, unit.options, unit.record.pruned, {}, {}});
             waiting.emplace_back(i, at->second);
         }
         out_.optimised = candidates.size();
@@ -242,14 +243,25 @@ private:
         candidate.messages = tools_.validate(*final, candidate.options);
         std::erase_if(candidate.messages, [](const ToolMessage& m) { return m.severity != Severity::error; });
         if (!candidate.messages.empty()) {
-            const char* culprit = has_error(tools_.validate(*candidate.pruned, candidate.options)) ? "glslang" : "SPIRV-Tools";
-            for (ToolMessage& m : candidate.messages) {
-                m.text = std::string("internal error: ") + culprit + " made an invalid module: " + m.text;
-            }
+            say_whose_mistake(candidate);
             return;
         }
         candidate.final_digest = digest_of(*final);
         candidate.final = pool_.keep(std::move(*final));
+    }
+
+    // What glslang translates to invalid SPIR-V is the shader's: it checks less than Vulkan
+    // asks.
+    void say_whose_mistake(Candidate& candidate) {
+        std::string whose = "internal error: optimising made an invalid module: ";
+        if (has_error(tools_.validate(*candidate.pruned, candidate.options))) {
+            const Compiled again = tools_.compile(candidate.unit->stage, candidate.unit->text, candidate.options);
+            std::vector<ToolMessage> raw = tools_.validate(again.words, candidate.options);
+            std::erase_if(raw, [](const ToolMessage& m) { return m.severity != Severity::error; });
+            whose = raw.empty() ? "internal error: pruning made an invalid module: " : "no valid SPIR-V comes of this: ";
+            if (!raw.empty()) candidate.messages = std::move(raw);
+        }
+        for (ToolMessage& m : candidate.messages) m.text = whose + m.text;
     }
 
     // Numbers the modules in order of first use and reflects those that no record describes.

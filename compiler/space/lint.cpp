@@ -162,6 +162,7 @@ private:
                 if (possible[a][d] || scratch.exhausted()) continue;
                 if (++value_searches_ > 10'000) continue;
                 const Set value = scratch.where(a, d);
+                if (scratch.exhausted()) continue;  // then it is no set of these values
                 for (size_t r = 0; r < allowed.size() && facts.excluded_by[d] == nullptr; ++r)
                     if (scratch.disjoint(value, allowed[r])) facts.excluded_by[d] = &space.rules[r];
             }

@@ -14,7 +14,7 @@ constexpr size_t header_words = 5;
 constexpr uint32_t magic = 0x07230203;
 constexpr uint16_t op_entry_point = 15;
 constexpr size_t known_opcodes = 400;
-constexpr uint32_t most_ids = 4'194'304;  // SPIR-V specification, section 2.17: what memory is taken for follows from this
+constexpr uint32_t most_ids = 4'194'303;  // SPIR-V specification, section 2.17: what memory is taken for follows from this
 
 struct Range {
     uint16_t first, last;

@@ -93,7 +93,7 @@ private:
     }
 
     void ask() {
-        const std::string versions = c_.tools.identity();
+        const std::string identity = c_.tools.identity();
         size_t done = 0;
         std::mutex mutex;
         c_.jobs.each(items_.size(), [&](size_t i) {
@@ -101,8 +101,8 @@ private:
             const Target target = c_.targets[it.target];
             const bool pair = it.fragment != no_artifact;
             const Stage stage = c_.stages[it.stage].stage;
-            const Digest action = pair ? link_back_action(versions, target, digests_[it.text], digests_[it.fragment])
-                                       : parse_back_action(versions, target, stage, digests_[it.text]);
+            const Digest action = pair ? link_back_action(identity, target, digests_[it.text], digests_[it.fragment])
+                                       : parse_back_action(identity, target, stage, digests_[it.text]);
             bool known = false;
             if (const auto got = c_.store.get(Keyspace::action, action); got.ok() && got->has_value())
                 if (auto messages = read_messages(action, **got)) {

@@ -101,11 +101,11 @@ private:
     }
 
     bool translate() {
-        const std::string versions = tools_.identity();
+        const std::string identity = tools_.identity();
         const bool named = jobs_.each(units_.size(), [&](size_t u) {
             for (const size_t t : wanted_)
                 units_[u].actions.push_back(
-                    artifact_action(versions, options_.targets[t], units_[u].layout, modules_.list[units_[u].module].digest));
+                    artifact_action(identity, options_.targets[t], units_[u].layout, modules_.list[units_[u].module].digest));
         });
         if (!named) return false;
         std::vector<Digest> asked;

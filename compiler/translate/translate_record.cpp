@@ -37,9 +37,9 @@ Bytes write_slots(const SlotLayout& layout) {
     return out.take();
 }
 
-Digest artifact_action(const std::string& versions, Target target, const SlotLayout& layout, const Digest& module) {
+Digest artifact_action(const std::string& identity, Target target, const SlotLayout& layout, const Digest& module) {
     KeyHasher key("kiln.artifact.v1");
-    key.field("tools", versions).field("rules", text_rules).field("target", name_of(target));
+    key.field("tools", identity).field("rules", text_rules).field("target", name_of(target));
     key.field("slots", ByteView(write_slots(layout))).field("module", module);
     return key.finish();
 }
@@ -68,15 +68,15 @@ std::optional<ArtifactRecord> read_artifact_record(const Digest& action, ByteVie
     return record;
 }
 
-Digest parse_back_action(const std::string& versions, Target target, Stage stage, const Digest& text) {
+Digest parse_back_action(const std::string& identity, Target target, Stage stage, const Digest& text) {
     KeyHasher key("kiln.parse_back.v1");
-    key.field("tools", versions).field("target", name_of(target)).field("stage", name_of(stage)).field("text", text);
+    key.field("tools", identity).field("target", name_of(target)).field("stage", name_of(stage)).field("text", text);
     return key.finish();
 }
 
-Digest link_back_action(const std::string& versions, Target target, const Digest& vertex, const Digest& fragment) {
+Digest link_back_action(const std::string& identity, Target target, const Digest& vertex, const Digest& fragment) {
     KeyHasher key("kiln.link_back.v1");
-    key.field("tools", versions).field("target", name_of(target)).field("vertex", vertex).field("fragment", fragment);
+    key.field("tools", identity).field("target", name_of(target)).field("vertex", vertex).field("fragment", fragment);
     return key.finish();
 }
 

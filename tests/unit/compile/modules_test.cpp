@@ -233,6 +233,7 @@ TEST(Modules, AnInvalidModuleIsAnErrorWithItsCondition) {
     EXPECT_TRUE(m.list.empty());
     ASSERT_EQ(1u, m.diags.list().size());
     EXPECT_NE(std::string::npos, m.diags.list()[0].message.find("invalid thing"));
+    EXPECT_TRUE(m.diags.list()[0].message.starts_with("no valid SPIR-V")) << "the shader's mistake and not ours";
     EXPECT_TRUE(m.diags.list()[0].notes[0].starts_with("in 1 of 3 variants of s")) << m.diags.list()[0].notes[0];
 }
 
