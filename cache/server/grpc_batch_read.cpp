@@ -56,32 +56,40 @@ grpc::Slice piece_of(std::shared_ptr<const Bytes> bytes) {
             holder};
 }
 
+constexpr uint64_t most_head = 112;  // bytes of one: a name, a status with the longest of our messages, tags and sizes
+
 // Everything of one response but the bytes of its data, which stand last.
-void put_head(std::string& out, const reapi::Digest& digest, const grpc::Status& status, uint64_t data) {
+void put_head(std::string& out, const BlobName& name, const grpc::Status& status, uint64_t data) {
     WireWriter code;
     if (!status.ok()) {
         code.number(1, static_cast<uint64_t>(status.error_code()));
         code.bytes(2, as_bytes(status.error_message()));
     }
     const Bytes said = code.take();
-    const uint64_t named = digest.ByteSizeLong();
+    const std::string hash = name.digest.hex();
+    const uint64_t named = 2 + hash.size() + (name.size == 0 ? 0 : 1 + varint_size(name.size));
     const uint64_t size = 1 + varint_size(named) + named + 1 + varint_size(said.size()) + said.size() +
                           (data == 0 ? 0 : 1 + varint_size(data) + data);
     put_field(out, 1, size);
     put_field(out, 1, named);
-    digest.AppendToString(&out);
+    put_field(out, 1, hash.size());
+    out += hash;
+    if (name.size != 0) {
+        out.push_back(2 << 3);
+        put_varint(out, name.size);
+    }
     put_field(out, 3, said.size());
     out += as_text(said);
     if (data != 0) put_field(out, 2, data);
 }
 
-void put_blob(Pieces& out, const reapi::Digest& digest, const BlobName& name, Answer<std::optional<BlobFile>> found) {
-    const auto failed = [&](const grpc::Status& status) { put_head(out.text(), digest, status, 0); };
+void put_blob(Pieces& out, const BlobName& name, Answer<std::optional<BlobFile>> found) {
+    const auto failed = [&](const grpc::Status& status) { put_head(out.text(), name, status, 0); };
     if (!found.ok()) return failed(status_of(found.refused()));
     if (!found->has_value() || (*found)->size() != name.size) return failed({grpc::StatusCode::NOT_FOUND, "not in the cache"});
     const BlobFile& file = **found;
     if (file.shared_memory() || name.size == 0) {
-        put_head(out.text(), digest, grpc::Status::OK, name.size);
+        put_head(out.text(), name, grpc::Status::OK, name.size);
         if (name.size < worth_a_piece)
             out.text() += as_text(file.memory());
         else
@@ -91,7 +99,7 @@ void put_blob(Pieces& out, const reapi::Digest& digest, const BlobName& name, An
     grpc::Slice bytes(static_cast<size_t>(name.size));
     if (!file.read(0, {const_cast<uint8_t*>(bytes.begin()), bytes.size()}).ok())
         return failed({grpc::StatusCode::INTERNAL, "the cache's disk failed"});
-    put_head(out.text(), digest, grpc::Status::OK, name.size);
+    put_head(out.text(), name, grpc::Status::OK, name.size);
     out.add(std::move(bytes));
 }
 
@@ -107,7 +115,7 @@ private:
     bool begin_at_once() override {
         in_ = request_.Length();
         if (const grpc::Status s = parse(); !s.ok()) return end(s), true;
-        if (const grpc::Status held = hold_answer(total_); !held.ok()) return end(held), true;
+        if (const grpc::Status held = hold_answer(total_ + most_head * names_.size()); !held.ok()) return end(held), true;
         if (total_ > small_batch || names_.size() > small_count) return false;
         bool slow = false;
         if (!read(&slow)) return false;
@@ -117,7 +125,17 @@ private:
         if (read(nullptr)) return finish();
         end(stopping());
     }
-    void end(const grpc::Status& status) override { writer_.FinishWithError(ended(status), tag()); }
+    void end(const grpc::Status& status) override {
+        ended(status);
+        forget();
+        writer_.FinishWithError(status, tag());
+    }
+    // Who reads the answer slowly does not keep the question here.
+    void forget() {
+        request_.Clear();
+        reapi::BatchReadBlobsRequest().Swap(&asked_);
+        lease_ = Service::Lease();
+    }
     std::string subject() const override { return asked_.instance_name(); }
 
     grpc::Status parse() {
@@ -127,7 +145,11 @@ private:
         auto reads = shared_.service.reads(*caller_, asked_.instance_name());
         if (!reads.ok()) return status_of(reads.refused());
         reads_.emplace(std::move(*reads));
-        if (asked_.digests_size() > grpc_most_entries) return invalid("more digests than one message may name");
+        if (asked_.digests_size() > grpc_most_entries) return invalid("more blobs than one message may name");
+        request_.Clear();
+        auto lease = shared_.service.lease(asked_.SpaceUsedLong());
+        if (!lease.ok()) return status_of(lease.refused());
+        lease_ = std::move(*lease);
         constexpr auto most = static_cast<uint64_t>(grpc_most_batch);
         names_.reserve(static_cast<size_t>(asked_.digests_size()));
         for (const reapi::Digest& digest : asked_.digests()) {
@@ -146,7 +168,7 @@ private:
             if (shared_.ending) return false;
             auto found = reads_->open(names_[next_].digest, slow, 0);
             if (slow != nullptr && *slow) return false;
-            put_blob(pieces_, asked_.digests(static_cast<int>(next_)), names_[next_], std::move(found));
+            put_blob(pieces_, names_[next_], std::move(found));
         }
         return true;
     }
@@ -154,8 +176,12 @@ private:
     void finish() {
         reads_.reset();  // counted by the time that the client has its answer
         const grpc::ByteBuffer response = pieces_.take();
+        if (response.Length() > static_cast<size_t>(grpc_most_message))
+            return end(invalid("the answer does not fit into a message"));
         out_ = response.Length();
-        writer_.Finish(response, ended(grpc::Status::OK), tag());
+        const grpc::Status& done = ended(grpc::Status::OK);
+        forget();
+        writer_.Finish(response, done, tag());
     }
 
     // What is read on the thread that serves sockets.
@@ -163,6 +189,7 @@ private:
     static constexpr size_t small_count = 256;
 
     const AskForBatchRead ask_;
+    Service::Lease lease_;
     grpc::ByteBuffer request_;
     grpc::ServerAsyncResponseWriter<grpc::ByteBuffer> writer_{&context_};
     reapi::BatchReadBlobsRequest asked_;

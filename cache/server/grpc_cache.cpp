@@ -21,21 +21,23 @@ public:
     explicit CapabilitiesCalls(CallContext& context) : shared_(context) {}
     grpc::Service& service() override { return service_; }
     void serve(grpc::ServerCompletionQueue& queue) override {
-        serve_unary(shared_, queue, "GetCapabilities", service_, &Service::RequestGetCapabilities,
-                    [this](const Caller& caller, const reapi::GetCapabilitiesRequest& request, reapi::ServerCapabilities& out) {
-                        return get(caller, request, out);
-                    });
+        serve_unary(
+            shared_, queue, "GetCapabilities", service_, &Service::RequestGetCapabilities,
+            [this](const Caller& caller, const reapi::GetCapabilitiesRequest& request) {
+                return shared_.enter(caller, request.instance_name(), Role::read);
+            },
+            [this](const Caller& caller, const reapi::GetCapabilitiesRequest& request, reapi::ServerCapabilities& out) {
+                return get(caller, request, out);
+            });
     }
 
 private:
     using Service = reapi::Capabilities::AsyncService;
 
     grpc::Status get(const Caller& caller, const reapi::GetCapabilitiesRequest& request, reapi::ServerCapabilities& out) {
-        const auto instance = shared_.service.enter(caller, request.instance_name(), Role::read);
-        if (!instance.ok()) return status_of(instance.refused());
         reapi::CacheCapabilities& cache = *out.mutable_cache_capabilities();
         cache.add_digest_functions(reapi::DigestFunction::SHA256);
-        cache.mutable_action_cache_update_capabilities()->set_update_enabled(caller.may(Role::ac_write, instance->name));
+        cache.mutable_action_cache_update_capabilities()->set_update_enabled(caller.may(Role::ac_write, request.instance_name()));
         cache.set_max_batch_total_size_bytes(grpc_most_batch);
         cache.set_symlink_absolute_path_strategy(reapi::SymlinkAbsolutePathStrategy::DISALLOWED);
         cache.add_supported_compressors(reapi::Compressor::ZSTD);
@@ -55,27 +57,37 @@ public:
     explicit ActionCacheCalls(CallContext& context) : shared_(context) {}
     grpc::Service& service() override { return service_; }
     void serve(grpc::ServerCompletionQueue& queue) override {
-        serve_unary(shared_, queue, "GetActionResult", service_, &Service::RequestGetActionResult,
-                    [this](const Caller& caller, const reapi::GetActionResultRequest& request, reapi::ActionResult& out) {
-                        const auto key = name_of(request.action_digest());
-                        if (!key) return invalid("the action's digest is none");
-                        if (grpc::Status s = check_function(request.digest_function()); !s.ok()) return s;
-                        return get(caller, request.instance_name(), key->digest, out);
-                    });
-        serve_unary(shared_, queue, "UpdateActionResult", service_, &Service::RequestUpdateActionResult,
-                    [this](const Caller& caller, const reapi::UpdateActionResultRequest& request, reapi::ActionResult& out) {
-                        return update(caller, request, out);
-                    });
+        serve_unary(
+            shared_, queue, "GetActionResult", service_, &Service::RequestGetActionResult,
+            [this](const Caller& caller, const reapi::GetActionResultRequest& request) {
+                return admit(caller, request, Role::read);
+            },
+            [this](const Caller& caller, const reapi::GetActionResultRequest& request, reapi::ActionResult& out) {
+                return get(caller, request.instance_name(), name_of(request.action_digest())->digest, out);
+            });
+        serve_unary(
+            shared_, queue, "UpdateActionResult", service_, &Service::RequestUpdateActionResult,
+            [this](const Caller& caller, const reapi::UpdateActionResultRequest& request) {
+                if (!request.has_action_result()) return invalid("no action result");
+                return admit(caller, request, Role::ac_write);
+            },
+            [this](const Caller& caller, const reapi::UpdateActionResultRequest& request, reapi::ActionResult& out) {
+                return update(caller, request, out);
+            });
     }
 
 private:
     using Service = reapi::ActionCache::AsyncService;
 
+    template <class Request>
+    grpc::Status admit(const Caller& caller, const Request& request, Role role) const {
+        if (!name_of(request.action_digest())) return invalid("the action's digest is none");
+        if (grpc::Status s = check_function(request.digest_function()); !s.ok()) return s;
+        return shared_.enter(caller, request.instance_name(), role);
+    }
+
     grpc::Status update(const Caller& caller, const reapi::UpdateActionResultRequest& request, reapi::ActionResult& out) {
         const auto key = name_of(request.action_digest());
-        if (!key) return invalid("the action's digest is none");
-        if (grpc::Status s = check_function(request.digest_function()); !s.ok()) return s;
-        if (!request.has_action_result()) return invalid("no action result");
         const std::string bytes = request.action_result().SerializeAsString();
         const auto written = shared_.service.put_action(caller, request.instance_name(), key->digest, as_bytes(bytes));
         if (!written.ok()) return status_of(written.refused());
@@ -113,13 +125,17 @@ public:
 
 private:
     void wait_for_next() override { new TreeCall(shared_, queue_, service_); }
-    void begin() override {
-        if (grpc::Status s = check_function(request_.digest_function()); !s.ok()) return end(s);
+    bool begin_at_once() override {
+        request_.DiscardUnknownFields();
         const auto root = name_of(request_.root_digest());
-        if (!root) return end(invalid("the root's digest is none"));
+        grpc::Status s = check_function(request_.digest_function());
+        if (s.ok() && !root) s = invalid("the root's digest is none");
+        if (s.ok()) s = shared_.enter(*caller_, request_.instance_name(), Role::read);
+        if (!s.ok()) return end(s), true;
         want(*root);
-        next(true);
+        return false;
     }
+    void begin() override { next(true); }
     void go_on(bool ok) override {
         if (!ok) return end({grpc::StatusCode::CANCELLED, "the client went away"});
         next(false);
@@ -172,23 +188,37 @@ public:
     explicit BlobCalls(CallContext& context) : shared_(context) {}
     grpc::Service& service() override { return service_; }
     void serve(grpc::ServerCompletionQueue& queue) override {
-        serve_unary(shared_, queue, "FindMissingBlobs", service_, &BlobService::RequestFindMissingBlobs,
-                    [this](const Caller& caller, const reapi::FindMissingBlobsRequest& request,
-                           reapi::FindMissingBlobsResponse& out) { return find_missing(caller, request, out); });
-        serve_unary(shared_, queue, "BatchUpdateBlobs", service_, &BlobService::RequestBatchUpdateBlobs,
-                    [this](const Caller& caller, const reapi::BatchUpdateBlobsRequest& request,
-                           reapi::BatchUpdateBlobsResponse& out) { return update(caller, request, out); });
+        serve_unary(
+            shared_, queue, "FindMissingBlobs", service_, &BlobService::RequestFindMissingBlobs,
+            [this](const Caller& caller, const reapi::FindMissingBlobsRequest& request) {
+                return admit(caller, request, request.blob_digests_size(), Role::read);
+            },
+            [this](const Caller& caller, const reapi::FindMissingBlobsRequest& request, reapi::FindMissingBlobsResponse& out) {
+                return find_missing(caller, request, out);
+            });
+        serve_unary(
+            shared_, queue, "BatchUpdateBlobs", service_, &BlobService::RequestBatchUpdateBlobs,
+            [this](const Caller& caller, const reapi::BatchUpdateBlobsRequest& request) {
+                return admit(caller, request, request.requests_size(), Role::cas_write);
+            },
+            [this](const Caller& caller, const reapi::BatchUpdateBlobsRequest& request, reapi::BatchUpdateBlobsResponse& out) {
+                return update(caller, request, out);
+            });
         serve_batch_read(shared_, queue, [this](auto&&... how) { service_.RequestBatchReadBlobs(how...); });
         new TreeCall(shared_, queue, service_);
     }
 
 private:
+    template <class Request>
+    grpc::Status admit(const Caller& caller, const Request& request, int entries, Role role) const {
+        if (grpc::Status s = check_function(request.digest_function()); !s.ok()) return s;
+        if (grpc::Status s = shared_.enter(caller, request.instance_name(), role); !s.ok()) return s;
+        if (entries > grpc_most_entries) return invalid("more blobs than one message may name");
+        return grpc::Status::OK;
+    }
+
     grpc::Status find_missing(const Caller& caller, const reapi::FindMissingBlobsRequest& request,
                               reapi::FindMissingBlobsResponse& out) {
-        if (grpc::Status s = check_function(request.digest_function()); !s.ok()) return s;
-        const auto instance = shared_.service.enter(caller, request.instance_name(), Role::read);
-        if (!instance.ok()) return status_of(instance.refused());
-        if (request.blob_digests_size() > grpc_most_entries) return invalid("more digests than one message may name");
         for (const reapi::Digest& digest : request.blob_digests()) {
             if (shared_.ending) return stopping();
             const auto name = name_of(digest);
@@ -202,10 +232,6 @@ private:
 
     grpc::Status update(const Caller& caller, const reapi::BatchUpdateBlobsRequest& request,
                         reapi::BatchUpdateBlobsResponse& out) {
-        if (grpc::Status s = check_function(request.digest_function()); !s.ok()) return s;
-        const auto instance = shared_.service.enter(caller, request.instance_name(), Role::cas_write);
-        if (!instance.ok()) return status_of(instance.refused());
-        if (request.requests_size() > grpc_most_entries) return invalid("more blobs than one message may hold");
         for (const auto& one : request.requests()) {
             if (shared_.ending) return stopping();
             auto& said = *out.add_responses();

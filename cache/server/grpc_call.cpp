@@ -32,6 +32,11 @@ std::shared_ptr<const Caller> CallContext::caller(const grpc::ServerContext& con
     return {std::move(tokens), &found};
 }
 
+grpc::Status CallContext::enter(const Caller& caller, const std::string& instance, Role role) const {
+    const auto entered = service.enter(caller, instance, role);
+    return entered.ok() ? grpc::Status::OK : status_of(entered.refused());
+}
+
 std::chrono::seconds CallContext::time_for(uint64_t bytes) const {
     return options.patience + std::chrono::seconds(bytes / std::max<uint64_t>(options.slowest, 1));
 }
@@ -68,12 +73,15 @@ void Call::on_event(bool ok) {
         delete this;
         return;
     }
-    if (state_ == State::runs) return post([this, ok] { go_on(ok); });
+    bool done = true;
+    if (state_ == State::runs) {
+        guarded([&] { done = go_on_at_once(ok); });
+        return done ? void() : post([this, ok] { go_on(ok); });
+    }
     state_ = State::runs;
     wait_for_next();
     began_ = std::chrono::steady_clock::now();
     caller_ = shared_.caller(context_);
-    bool done = true;
     guarded([&] { done = begin_at_once(); });
     if (!done) post([this] { begin(); });
 }

@@ -22,6 +22,11 @@ namespace kiln {
 
 namespace reapi = build::bazel::remote::execution::v2;
 
+// Of one message that names many. What is named takes more memory here than on the wire.
+constexpr int grpc_most_entries = 32'768;
+
+grpc::Status status_of(const Refused& refused);
+
 // Ends a call that takes too long. The call and its context may be gone when the time comes.
 class CallTimer {
 public:
@@ -49,6 +54,8 @@ struct CallContext {
 
     // By the metadata "authorization: Bearer T" (or Basic); a field that is neither is no token.
     std::shared_ptr<const Caller> caller(const grpc::ServerContext& context) const;
+    // Whether the caller may do that there.
+    grpc::Status enter(const Caller& caller, const std::string& instance, Role role) const;
     // What sending or receiving so many bytes may take.
     std::chrono::seconds time_for(uint64_t bytes) const;
 };
@@ -68,9 +75,12 @@ protected:
         ++shared_.calls;
     }
     virtual ~Call() { --shared_.calls; }
-    virtual void wait_for_next() = 0;               // makes the object that waits for the next call of this method
-    virtual bool begin_at_once() { return false; }  // without waiting for anything; false: begin() has to
-    virtual void begin() = 0;
+    virtual void wait_for_next() = 0;  // makes the object that waits for the next call of this method
+    // Of each step, what waits for nothing: who may not call is told so, and memory for what came is taken, before the step
+    // stands in line. False: the rest is for begin() or go_on().
+    virtual bool begin_at_once() { return false; }
+    virtual bool go_on_at_once(bool) { return false; }
+    virtual void begin() {}
     virtual void go_on(bool) {}                        // the operation before is done; false: the client is gone
     virtual void end(const grpc::Status& status) = 0;  // by an operation; with ended()
     virtual std::string subject() const = 0;           // for the log: an instance or a resource name
@@ -100,7 +110,8 @@ private:
     std::chrono::steady_clock::time_point began_{};
 };
 
-// A call that answers one message by one.
+// A call that answers one message by one. Who may not ask is told so at once; what the message takes here is held as a body
+// until it is answered, since the disk's line may be long.
 template <class Calls, class Request, class Response>
 class UnaryCall final : public Call {
 public:
@@ -109,6 +120,7 @@ public:
         const char* name;
         Calls& service;
         void (Calls::*ask)(grpc::ServerContext*, Request*, Writer*, grpc::CompletionQueue*, grpc::ServerCompletionQueue*, void*);
+        std::function<grpc::Status(const Caller&, const Request&)> admit;  // waits for nothing
         std::function<grpc::Status(const Caller&, const Request&, Response&)> answer;
     };
     UnaryCall(CallContext& shared, grpc::ServerCompletionQueue& queue, std::shared_ptr<const Method> method)
@@ -118,15 +130,33 @@ public:
 
 private:
     void wait_for_next() override { new UnaryCall(shared_, queue_, what_); }
+    bool begin_at_once() override {
+        if (shared_.log.wants_requests()) in_ = request_.ByteSizeLong();
+        if (const grpc::Status s = what_->admit(*caller_, request_); !s.ok()) return end(s), true;
+        auto lease = shared_.service.lease(request_.SpaceUsedLong());
+        if (!lease.ok()) return end(status_of(lease.refused())), true;
+        lease_ = std::move(*lease);
+        return false;
+    }
     void begin() override {
         const grpc::Status status = what_->answer(*caller_, request_, response_);
-        if (shared_.log.wants_requests()) in_ = request_.ByteSizeLong();
         if (!status.ok()) return end(status);
         out_ = response_.ByteSizeLong();
         if (const grpc::Status held = hold_answer(out_); !held.ok()) return end(held);
-        writer_.Finish(response_, ended(status), tag());
+        ended(status);
+        forget();
+        writer_.Finish(response_, status, tag());
     }
-    void end(const grpc::Status& status) override { writer_.FinishWithError(ended(status), tag()); }
+    void end(const grpc::Status& status) override {
+        ended(status);
+        forget();
+        writer_.FinishWithError(status, tag());
+    }
+    // Who reads the answer slowly does not keep the question here.
+    void forget() {
+        Request().Swap(&request_);
+        lease_ = Service::Lease();
+    }
     std::string subject() const override {
         if constexpr (requires { request_.instance_name(); })
             return request_.instance_name();
@@ -137,19 +167,20 @@ private:
     }
 
     const std::shared_ptr<const Method> what_;
+    Service::Lease lease_;
     Request request_;
     Response response_;
     Writer writer_{&context_};
 };
 
-template <class Calls, class Request, class Response, class Answer>
+template <class Calls, class Request, class Response, class Admit, class Answer>
 void serve_unary(CallContext& shared, grpc::ServerCompletionQueue& queue, const char* name, std::type_identity_t<Calls>& service,
                  void (Calls::*ask)(grpc::ServerContext*, Request*, grpc::ServerAsyncResponseWriter<Response>*,
                                     grpc::CompletionQueue*, grpc::ServerCompletionQueue*, void*),
-                 Answer answer) {
+                 Admit admit, Answer answer) {
     using Method = typename UnaryCall<Calls, Request, Response>::Method;
-    new UnaryCall<Calls, Request, Response>(shared, queue,
-                                            std::make_shared<const Method>(Method{name, service, ask, std::move(answer)}));
+    new UnaryCall<Calls, Request, Response>(
+        shared, queue, std::make_shared<const Method>(Method{name, service, ask, std::move(admit), std::move(answer)}));
 }
 
 // A service and the calls that wait on a queue for its methods.
@@ -166,10 +197,6 @@ std::unique_ptr<CallService> make_blobs(CallContext& context);
 std::unique_ptr<CallService> make_byte_stream(CallContext& context);
 std::unique_ptr<CallService> make_health(CallContext& context);
 
-// Of one message that names many. What is named takes more memory here than on the wire.
-constexpr int grpc_most_entries = 65'536;
-
-grpc::Status status_of(const Refused& refused);
 grpc::Status invalid(const std::string& what);
 grpc::Status stopping();
 // Only SHA-256 is spoken; 0 is a client that says nothing.

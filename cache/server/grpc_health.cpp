@@ -15,12 +15,16 @@ public:
     explicit HealthCalls(CallContext& context) : shared_(context) {}
     grpc::Service& service() override { return service_; }
     void serve(grpc::ServerCompletionQueue& queue) override {
-        serve_unary(shared_, queue, "Check", service_, &health::Health::AsyncService::RequestCheck,
-                    [](const Caller&, const health::HealthCheckRequest& request, health::HealthCheckResponse& out) {
-                        if (!request.service().empty()) return grpc::Status(grpc::StatusCode::NOT_FOUND, "no such service");
-                        out.set_status(health::HealthCheckResponse::SERVING);
-                        return grpc::Status::OK;
-                    });
+        serve_unary(
+            shared_, queue, "Check", service_, &health::Health::AsyncService::RequestCheck,
+            [](const Caller&, const health::HealthCheckRequest& request) {
+                if (request.service().empty()) return grpc::Status::OK;
+                return grpc::Status(grpc::StatusCode::NOT_FOUND, "no such service");
+            },
+            [](const Caller&, const health::HealthCheckRequest&, health::HealthCheckResponse& out) {
+                out.set_status(health::HealthCheckResponse::SERVING);
+                return grpc::Status::OK;
+            });
     }
 
 private:

@@ -25,6 +25,13 @@ public:
 
 private:
     void wait_for_next() override { new ReadCall(shared_, queue_, service_); }
+    bool begin_at_once() override {
+        request_.DiscardUnknownFields();
+        const auto name = parse_resource_name(request_.resource_name());
+        if (!name || name->upload) return end(invalid("the resource name is none to read")), true;
+        if (const grpc::Status s = shared_.enter(*caller_, name->instance, Role::read); !s.ok()) return end(s), true;
+        return false;
+    }
     void begin() override {
         if (const grpc::Status ready = open(); !ready.ok()) return end(ready);
         const uint64_t left = end_ - at_;
@@ -41,7 +48,6 @@ private:
 
     grpc::Status open() {
         const auto name = parse_resource_name(request_.resource_name());
-        if (!name || name->upload) return invalid("the resource name is none to read");
         auto file = shared_.service.blob(*caller_, name->instance, name->blob.digest);
         if (!file.ok()) return status_of(file.refused());
         if (!file->has_value() || (*file)->size() != name->blob.size) return {grpc::StatusCode::NOT_FOUND, "not in the cache"};
@@ -104,21 +110,35 @@ public:
 
 private:
     void wait_for_next() override { new WriteCall(shared_, queue_, service_); }
-    void begin() override {
+    bool begin_at_once() override {
         timer_.emplace(&context_, shared_.options.patience);
         reader_.Read(&request_, tag());
+        return true;
     }
-    void go_on(bool ok) override {
-        if (!ok) return end(invalid("the upload ended without finish_write"));
-        if (!name_) {
-            const grpc::Status begun = name_it();
-            if (!begun.ok()) return end(begun);
-            if (there_) return finish(name_->zstd ? -1 : static_cast<int64_t>(name_->blob.size));
-        } else if (!request_.resource_name().empty() && request_.resource_name() != first_) {
-            return end(invalid("the resource name changes within an upload"));
+    bool go_on_at_once(bool ok) override {
+        const auto taken = [&]() -> grpc::Status {
+            if (!ok) return invalid("the upload ended without finish_write");
+            request_.DiscardUnknownFields();
+            if (!name_) {
+                if (grpc::Status named = name_it(); !named.ok()) return named;
+            } else if (!request_.resource_name().empty() && request_.resource_name() != first_) {
+                return invalid("the resource name changes within an upload");
+            }
+            // Memory is taken as the bytes arrive, not as they are announced.
+            auto lease = shared_.service.lease(request_.data().size() * (name_->zstd ? 2 : 1));
+            if (!lease.ok()) return status_of(lease.refused());
+            lease_.join(std::move(*lease));
+            return grpc::Status::OK;
+        }();
+        if (taken.ok()) return false;
+        return end(taken), true;
+    }
+    void go_on(bool) override {
+        if (!asked_) {
+            asked_ = true;
+            if (is_there()) return finish(name_->zstd ? -1 : static_cast<int64_t>(name_->blob.size));
         }
-        const grpc::Status taken = take();
-        if (!taken.ok()) return end(taken);
+        if (const grpc::Status taken = take(); !taken.ok()) return end(taken);
         if (!request_.finish_write()) return reader_.Read(&request_, tag());
         store();
     }
@@ -128,21 +148,21 @@ private:
     grpc::Status name_it() {
         const auto name = parse_resource_name(request_.resource_name());
         if (!name || !name->upload) return invalid("the resource name is none to write");
-        const auto instance = shared_.service.enter(*caller_, name->instance, Role::cas_write);
-        if (!instance.ok()) return status_of(instance.refused());
+        if (grpc::Status s = shared_.enter(*caller_, name->instance, Role::cas_write); !s.ok()) return s;
         if (name->blob.size > shared_.service.limits().blob)
             return status_of(
                 shared_.service.refuse(name->instance, *caller_, Refusal::too_large, "the blob is larger than the server takes"));
         name_ = *name;
         first_ = request_.resource_name();
-        if (caller_->may(Role::read, name->instance)) {
-            const auto there = shared_.service.has_whole_blob(*caller_, name->instance, name->blob);
-            there_ = there.ok() && *there;
-            if (there_) return grpc::Status::OK;
-        }
         // The time of a whole upload, now that its size is known.
         timer_.emplace(&context_, shared_.time_for(name->blob.size));
         return grpc::Status::OK;
+    }
+
+    bool is_there() const {
+        if (!caller_->may(Role::read, name_->instance)) return false;
+        const auto there = shared_.service.has_whole_blob(*caller_, name_->instance, name_->blob);
+        return there.ok() && *there;
     }
 
     // A compressed blob may be a little larger on the wire than it is.
@@ -152,10 +172,6 @@ private:
         if (request_.write_offset() != static_cast<int64_t>(received_.size()))
             return invalid("the offset is not where the upload stands");
         if (request_.data().size() > most() - received_.size()) return invalid("more bytes than the blob has");
-        // Memory is taken as the bytes arrive, not as they are announced.
-        auto lease = shared_.service.lease(request_.data().size() * (name_->zstd ? 2 : 1));
-        if (!lease.ok()) return status_of(lease.refused());
-        lease_.join(std::move(*lease));
         const ByteView bytes = as_bytes(request_.data());
         received_.insert(received_.end(), bytes.begin(), bytes.end());
         in_ = received_.size();
@@ -187,7 +203,7 @@ private:
     grpc::ServerAsyncReader<bs::WriteResponse, bs::WriteRequest> reader_{&context_};
     std::optional<ResourceName> name_;
     std::string first_;
-    bool there_ = false;
+    bool asked_ = false;  // whether the blob is there already
     Bytes received_;
     Service::Lease lease_;
 };
@@ -199,17 +215,22 @@ public:
     void serve(grpc::ServerCompletionQueue& queue) override {
         new ReadCall(shared_, queue, service_);
         new WriteCall(shared_, queue, service_);
-        serve_unary(shared_, queue, "QueryWriteStatus", service_, &StreamService::RequestQueryWriteStatus,
-                    [this](const Caller& caller, const bs::QueryWriteStatusRequest& request, bs::QueryWriteStatusResponse& out) {
-                        return query(caller, request, out);
-                    });
+        serve_unary(
+            shared_, queue, "QueryWriteStatus", service_, &StreamService::RequestQueryWriteStatus,
+            [this](const Caller& caller, const bs::QueryWriteStatusRequest& request) {
+                const auto name = parse_resource_name(request.resource_name());
+                if (!name || !name->upload) return invalid("the resource name is none to write");
+                return shared_.enter(caller, name->instance, Role::read);
+            },
+            [this](const Caller& caller, const bs::QueryWriteStatusRequest& request, bs::QueryWriteStatusResponse& out) {
+                return query(caller, request, out);
+            });
     }
 
 private:
     // Uploads are not resumed: one that was cut off begins again, so a blob is there in whole or not at all.
     grpc::Status query(const Caller& caller, const bs::QueryWriteStatusRequest& request, bs::QueryWriteStatusResponse& out) {
         const auto name = parse_resource_name(request.resource_name());
-        if (!name || !name->upload) return invalid("the resource name is none to write");
         const auto there = shared_.service.has_blob(caller, name->instance, name->blob);
         if (!there.ok()) return status_of(there.refused());
         out.set_complete(*there);
