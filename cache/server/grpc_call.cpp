@@ -1,6 +1,5 @@
 #include "cache/server/grpc_call.h"
 
-#include <algorithm>
 #include <ctime>
 #include <exception>
 
@@ -23,9 +22,10 @@ std::string address_of(std::string peer) {
 std::shared_ptr<const Caller> CallContext::caller(const grpc::ServerContext& context) const {
     std::shared_ptr<const Access> tokens = access();
     const auto one = [&]() -> const Caller& {
-        const auto field = context.client_metadata().find("authorization");
-        if (field == context.client_metadata().end()) return tokens->anonymous();
-        const auto token = token_of({field->second.data(), field->second.size()});
+        const auto [field, end] = context.client_metadata().equal_range("authorization");
+        if (field == end) return tokens->anonymous();
+        auto token = token_of({field->second.data(), field->second.size()});
+        if (std::next(field) != end) token.reset();
         return tokens->caller(token ? *token : " ", std::time(nullptr));  // no token holds a space
     };
     const Caller& found = one();
@@ -37,16 +37,12 @@ grpc::Status CallContext::enter(const Caller& caller, const std::string& instanc
     return entered.ok() ? grpc::Status::OK : status_of(entered.refused());
 }
 
-std::chrono::seconds CallContext::time_for(uint64_t bytes) const {
-    return options.patience + std::chrono::seconds(bytes / std::max<uint64_t>(options.slowest, 1));
-}
-
-grpc::Status Call::hold_answer(uint64_t bytes) {
+grpc::Status Call::hold_answer(uint64_t bytes, uint64_t timed) {
     answer_ = Service::Lease();
     auto lease = shared_.service.lease_response(bytes);
     if (!lease.ok()) return status_of(lease.refused());
     answer_ = std::move(*lease);
-    timer_.emplace(&context_, shared_.time_for(bytes));
+    deadline_.set(shared_.time_for(timed));
     return grpc::Status::OK;
 }
 
@@ -88,6 +84,7 @@ void Call::on_event(bool ok) {
 
 const grpc::Status& Call::ended(const grpc::Status& status) {
     state_ = State::ends;
+    if (!deadline_.is_set()) deadline_.set(shared_.options.patience);
     if (!shared_.log.wants_requests()) return status;
     const auto taken = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - began_).count();
     shared_.log.request(std::move(LogLine("request")
@@ -136,19 +133,5 @@ grpc::Status check_function(int digest_function) {
 }
 
 std::optional<BlobName> name_of(const reapi::Digest& digest) { return blob_name(digest.hash(), digest.size_bytes()); }
-
-CallTimer::CallTimer(grpc::ServerContext* context, std::chrono::seconds after) : shared_(std::make_shared<Shared>()) {
-    shared_->context = context;
-    // What the alarm calls belongs to gRPC until it has run, which the alarm's end makes happen at once.
-    alarm_.Set(std::chrono::system_clock::now() + after, [shared = shared_](bool expired) {
-        const std::lock_guard lock(shared->mutex);
-        if (expired && shared->context != nullptr) shared->context->TryCancel();
-    });
-}
-
-CallTimer::~CallTimer() {
-    const std::lock_guard lock(shared_->mutex);
-    shared_->context = nullptr;
-}
 
 }  // namespace kiln

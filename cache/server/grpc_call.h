@@ -5,7 +5,6 @@
 // gRPC's events come to few threads, one on a small machine, since threads that wait for them in turn cost every event a change
 // of thread. What may wait for the disk therefore runs in a pool.
 
-#include <grpcpp/alarm.h>
 #include <grpcpp/grpcpp.h>
 #include <remote_execution.grpc.pb.h>
 
@@ -15,7 +14,9 @@
 #include <type_traits>
 
 #include "cache/protocol/resource_name.h"
+#include "cache/server/grpc_deadlines.h"
 #include "cache/server/grpc_server.h"
+#include "cache/server/patience.h"
 #include "cache/server/work_pool.h"
 
 namespace kiln {
@@ -27,37 +28,23 @@ constexpr int grpc_most_entries = 32'768;
 
 grpc::Status status_of(const Refused& refused);
 
-// Ends a call that takes too long. The call and its context may be gone when the time comes.
-class CallTimer {
-public:
-    CallTimer(grpc::ServerContext* context, std::chrono::seconds after);
-    ~CallTimer();
-
-private:
-    struct Shared {
-        std::mutex mutex;
-        grpc::ServerContext* context;
-    };
-    std::shared_ptr<Shared> shared_;
-    grpc::Alarm alarm_;
-};
-
 struct CallContext {
     Service& service;
     Log& log;
     const std::function<std::shared_ptr<const Access>()> access;
     const GrpcOptions options;
+    CallDeadlines deadlines;
     WorkPool work;
     std::atomic<size_t> calls{0};  // that are there, the waiting among them: each needs its queue until its last event
     // Patience with what is under way is over: a call ends at its next step, in loops over many blobs at the next one.
     std::atomic<bool> ending{false};
 
-    // By the metadata "authorization: Bearer T" (or Basic); a field that is neither is no token.
+    // By the metadata "authorization: Bearer T" (or Basic); a field that is neither is no token, and nor are two.
     std::shared_ptr<const Caller> caller(const grpc::ServerContext& context) const;
     // Whether the caller may do that there.
     grpc::Status enter(const Caller& caller, const std::string& instance, Role role) const;
     // What sending or receiving so many bytes may take.
-    std::chrono::seconds time_for(uint64_t bytes) const;
+    std::chrono::milliseconds time_for(uint64_t bytes) const { return whole_time(options.patience, bytes, options.slowest); }
 };
 
 // One call, from the wait for it to its end, when it deletes itself. Its events come one at a time: begin() and go_on() end with
@@ -85,9 +72,10 @@ protected:
     virtual void end(const grpc::Status& status) = 0;  // by an operation; with ended()
     virtual std::string subject() const = 0;           // for the log: an instance or a resource name
     // Before the operation that sends so many bytes, whose reader may be slow: takes a share of the memory for answers until the
-    // next one, and the time that it may take. Not ok: `busy`, and the call is to be ended with that.
-    grpc::Status hold_answer(uint64_t bytes);
-    // Marks the next event as the last and writes the log.
+    // next one, and the time that it may take, or that `timed` bytes may. Not ok: `busy`, and the call is to be ended with that.
+    grpc::Status hold_answer(uint64_t bytes) { return hold_answer(bytes, bytes); }
+    grpc::Status hold_answer(uint64_t bytes, uint64_t timed);
+    // Marks the next event as the last, gives it time, and writes the log.
     const grpc::Status& ended(const grpc::Status& status);
     void* tag() { return this; }
 
@@ -96,7 +84,7 @@ protected:
     grpc::ServerContext context_;
     std::shared_ptr<const Caller> caller_;
     uint64_t in_ = 0, out_ = 0;  // bytes of messages, for the log
-    std::optional<CallTimer> timer_;
+    CallDeadlines::Deadline deadline_{shared_.deadlines, context_};
 
 private:
     enum class State { waits, runs, ends };

@@ -50,7 +50,7 @@ Result<std::unique_ptr<GrpcServer>> GrpcServer::start(Service& service, Log& log
                                                       std::function<std::shared_ptr<const Access>()> access,
                                                       const GrpcOptions& options) {
     auto calls = std::make_unique<GrpcCalls>();
-    calls->context.reset(new CallContext{service, log, std::move(access), options, WorkPool(options.work_threads)});
+    calls->context.reset(new CallContext{service, log, std::move(access), options, {}, WorkPool(options.work_threads)});
     for (const auto make : {make_capabilities, make_action_cache, make_blobs, make_byte_stream, make_health})
         calls->services.push_back(make(*calls->context));
 

@@ -35,8 +35,7 @@ private:
     void begin() override {
         if (const grpc::Status ready = open(); !ready.ok()) return end(ready);
         const uint64_t left = end_ - at_;
-        if (const grpc::Status held = hold_answer(std::min(left, zstd_ ? 2 * frame : piece)); !held.ok()) return end(held);
-        timer_.emplace(&context_, shared_.time_for(left));
+        if (const grpc::Status held = hold_answer(std::min(left, zstd_ ? 2 * frame : piece), left); !held.ok()) return end(held);
         next();
     }
     void go_on(bool ok) override {
@@ -111,7 +110,7 @@ public:
 private:
     void wait_for_next() override { new WriteCall(shared_, queue_, service_); }
     bool begin_at_once() override {
-        timer_.emplace(&context_, shared_.options.patience);
+        deadline_.set(shared_.options.patience);
         reader_.Read(&request_, tag());
         return true;
     }
@@ -155,7 +154,7 @@ private:
         name_ = *name;
         first_ = request_.resource_name();
         // The time of a whole upload, now that its size is known.
-        timer_.emplace(&context_, shared_.time_for(name->blob.size));
+        deadline_.set(shared_.time_for(name->blob.size));
         return grpc::Status::OK;
     }
 

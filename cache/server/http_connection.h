@@ -16,6 +16,7 @@
 
 #include "cache/server/http_head.h"
 #include "cache/server/http_loop.h"
+#include "cache/server/patience.h"
 #include "cache/server/tls_stream.h"
 
 namespace kiln {
@@ -58,8 +59,7 @@ private:
         beast::get_lowest_layer(stream_).expires_at(std::min(Clock::now() + after, whole_until_));
     }
     void whole(uint64_t bytes) {
-        const uint64_t slowest = std::max<uint64_t>(1, shared_.options.slowest);
-        whole_until_ = Clock::now() + shared_.options.patience + std::chrono::seconds(bytes / slowest);
+        whole_until_ = Clock::now() + whole_time(shared_.options.patience, bytes, shared_.options.slowest);
     }
 
     // `what` failed: a deadline in the middle of a request is counted, a client that went away is nothing.

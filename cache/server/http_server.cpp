@@ -172,7 +172,7 @@ private:
         socket.non_blocking(true, failed);
         static constexpr std::string_view busy =
             "HTTP/1.1 503 Service Unavailable\r\nRetry-After: 1\r\nContent-Length: 0\r\nConnection: close\r\n\r\n";
-        if (tls_ == nullptr) socket.send(net::buffer(busy), 0, failed);
+        if (options_.certificate.empty()) socket.send(net::buffer(busy), 0, failed);
         socket.shutdown(tcp::socket::shutdown_send, failed);
     }
 

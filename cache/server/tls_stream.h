@@ -4,6 +4,7 @@
 //
 // One operation at a time, with a deadline as beast::tcp_stream has it: when it passes, the socket is closed and the operation
 // ends with beast::error::timeout. Handlers are called from the executor, never from within the call that began the operation.
+// The program blocks or ignores SIGPIPE, since OpenSSL writes without MSG_NOSIGNAL.
 
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>

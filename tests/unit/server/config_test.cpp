@@ -1,4 +1,5 @@
 #include "cache/server/config.h"
+#include "cache/server/patience.h"
 
 #include <gtest/gtest.h>
 
@@ -131,6 +132,16 @@ TEST(Config, BeyondLoopbackTakesTokensAndTls) {
     EXPECT_NE(problem_of("folder: x\nlisten: \"[::]:80\"\n").find("takes tokens"), std::string::npos);
     for (const char* loopback : {"127.0.0.1:80", "127.8.9.1:80", "\"[::1]:80\""})
         EXPECT_EQ(problem_of("folder: x\nlisten: " + std::string(loopback) + "\n"), "") << loopback;
+}
+
+TEST(Patience, IsBoundedWhateverTheSize) {
+    using namespace std::chrono_literals;
+    EXPECT_EQ(whole_time(60s, 640, 64), 70s);
+    EXPECT_EQ(whole_time(1500ms, 63, 64), 1500ms);
+    EXPECT_EQ(whole_time(0s, 5, 0), 5s);
+    const auto longest = whole_time(std::chrono::milliseconds::max(), UINT64_MAX, 1);
+    EXPECT_GT(longest, 24h * 365);
+    EXPECT_GT(std::chrono::steady_clock::now() + longest, std::chrono::steady_clock::now());
 }
 
 }  // namespace

@@ -125,6 +125,15 @@ TEST_F(Grpc, ChecksRolesOnEveryCall) {
         EXPECT_EQ(upload({upload_name("main", "u", named(streamed)), streamed}).error_code(), row.writes_blobs) << row.token;
         EXPECT_EQ(put_action(named(mine), result(blob)), row.writes_actions) << row.token;
     }
+    // Two tokens are none, whichever they are.
+    as("cccccccccccccccccccc");
+    const auto both = context();
+    both->AddMetadata("authorization", token_);
+    re::GetCapabilitiesRequest ask;
+    ask.set_instance_name("main");
+    re::ServerCapabilities can;
+    EXPECT_TRUE(capabilities_->GetCapabilities(context().get(), ask, &can).ok());
+    EXPECT_EQ(capabilities_->GetCapabilities(both.get(), ask, &can).error_code(), StatusCode::UNAUTHENTICATED);
     // A pull request reads main, and what it writes is its own.
     as("pppppppppppppppppppp");
     instance_ = "pr/7";
